@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "slam/data/frame.h"
+#include "slam/data/types.h"
+
+namespace planecast::slam {
+
+struct Keyframe {
+  KeyframeId id = kNone;
+  int frame_index = 0;
+  double timestamp = 0.0;
+  Pose cam_from_world = Pose::Identity();
+  std::shared_ptr<const Features> features;  ///< shared between snapshots, never changed
+  std::vector<LandmarkId> landmarks;         ///< per keypoint; kNone where there is none
+  std::vector<int> labels;                   ///< per keypoint: plane instance mask label, 0 = none
+  cv::Mat depth;          ///< CV_32F metres, raw pixels, may be empty; shared, never written
+  cv::Mat label_image;    ///< CV_16U plane instances, raw pixels, may be empty; shared
+  KeyframeId parent = kNone;                 ///< spanning tree
+
+  Eigen::Vector3d centre_world() const { return cam_from_world.inverse().translation(); }
+};
+
+}  // namespace planecast::slam

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "slam/data/types.h"
+
+namespace planecast::slam {
+
+/// target = scale * rotation * source + translation.
+struct Similarity {
+  double scale = 1.0;
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+
+  Eigen::Vector3d operator*(const Eigen::Vector3d& source) const {
+    return scale * (rotation * source) + translation;
+  }
+};
+
+/// Least-squares alignment (Umeyama 1991) of source points on target points; at least 3 of each, not
+/// collinear. With `with_scale` false the scale is 1 (SE3).
+Similarity align_points(const std::vector<Eigen::Vector3d>& source,
+                        const std::vector<Eigen::Vector3d>& target, bool with_scale);
+
+}  // namespace planecast::slam

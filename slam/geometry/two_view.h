@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "slam/data/camera.h"
+#include "slam/data/types.h"
+
+namespace planecast::slam {
+
+/// Matched undistorted pixels of a reference and a current image.
+struct PointPair {
+  Eigen::Vector2d ref;
+  Eigen::Vector2d cur;
+};
+
+struct FundamentalOptions {
+  int iterations = 200;
+  double sigma_px = 1.0;  ///< of a keypoint, [K]
+  std::uint64_t seed = 1;
+};
+
+struct FundamentalResult {
+  Eigen::Matrix3d cur_F_ref;  ///< x_cur^T F x_ref = 0
+  std::vector<char> inlier;
+  double score = 0.0;  ///< S_F: sum of (5.991 - chi2) over both directions, gated at 3.841
+};
+
+/// Normalised 8-point RANSAC; needs at least 8 pairs. The score is ORB-SLAM's S_F (Mur-Artal 2015,
+/// section IV).
+std::optional<FundamentalResult> find_fundamental(const std::vector<PointPair>& pairs,
+                                                  const FundamentalOptions& options);
+
+/// ORB-SLAM's S_H of a homography: sum over both directions of (5.991 - chi2) where chi2 < 5.991.
+double score_homography(const Eigen::Matrix3d& cur_H_ref, const std::vector<PointPair>& pairs,
+                        double sigma_px, std::vector<char>* inlier);
+
+/// Candidate relative poses cur_from_ref, |t| = 1.
+std::vector<Pose> decompose_homography(const Eigen::Matrix3d& cur_H_ref, const Camera& camera);
+std::vector<Pose> decompose_fundamental(const Eigen::Matrix3d& cur_F_ref, const Camera& camera);
+
+struct TwoViewOptions {
+  double min_parallax_deg = 1.0;
+  double max_runner_up_ratio = 0.75;  ///< the second best pose has fewer good points than this share
+  int min_points = 50;
+  double sigma_px = 1.0;
+};
+
+enum class TwoViewFailure { kNone, kTooFewMatches, kTooLittleParallax, kAmbiguous, kTooFewPoints };
+
+struct TwoViewResult {
+  TwoViewFailure failure = TwoViewFailure::kNone;
+  Pose cur_from_ref = Pose::Identity();
+  std::vector<std::optional<Eigen::Vector3d>> points_ref;  ///< per pair, in the reference camera
+  double parallax_deg = 0.0;  ///< of the 50th largest (or the smallest, if fewer)
+  int good = 0;
+};
+
+/// Chooses among candidate poses by positive depth, reprojection error (chi2 5.991) and parallax.
+TwoViewResult select_relative_pose(const std::vector<Pose>& candidates,
+                                   const std::vector<PointPair>& pairs,
+                                   const std::vector<char>& inlier, const Camera& camera,
+                                   const TwoViewOptions& options);
+
+}  // namespace planecast::slam

@@ -1,0 +1,58 @@
+#pragma once
+
+#include "slam/data/camera.h"
+#include "slam/data/map.h"
+
+namespace planecast::slam {
+
+struct BundleOptions {
+  int iterations = 10;
+  double chi2_mono = 5.991;
+  double chi2_depth = 7.815;
+  double depth_baseline_m = 0.08;  ///< as in PoseOptions
+  int max_local_keyframes = 20;    ///< free keyframes of the local bundle, best covisible first
+  int max_fixed_keyframes = 40;    ///< seen by the same landmarks, held
+  bool refine_focal = false;       ///< global only: one common factor on fx and fy
+  ScaleLevels levels;
+};
+
+struct BundleResult {
+  int free_keyframes = 0;
+  int fixed_keyframes = 0;
+  int landmarks = 0;
+  int observations = 0;
+  int removed_observations = 0;  ///< outliers taken out of the map
+  double rms_before_px = 0.0;
+  double rms_after_px = 0.0;
+  int iterations = 0;
+  double focal_factor = 1.0;  ///< refined fx / given fx
+};
+
+/// Ceres with analytic Jacobians, Schur ordering, num_threads = 1 (two are not repeatable), Huber; two
+/// passes with the outliers removed between and after. Poses, landmarks and observations of `map` are
+/// updated; planes are not touched. The first keyframe of the map (and, in mono, what fixes the gauge) is held.
+BundleResult local_bundle(Map& map, const Camera& camera, KeyframeId centre,
+                          const BundleOptions& options);
+/// All keyframes and landmarks. Where options.refine_focal is set, `camera` is updated and so are, by the
+/// caller, the undistorted pixels.
+BundleResult global_bundle(Map& map, Camera& camera, const BundleOptions& options);
+
+struct JointOptions {
+  BundleOptions bundle;
+  double plane_sigma = 0.01;           ///< eps_Pi in map units
+  double max_reprojection_rise = 0.01; ///< the result is dropped if the reprojection cost rises by more
+};
+
+struct JointResult {
+  bool kept = false;
+  double reprojection_cost_before = 0.0;  ///< robust
+  double reprojection_cost_after = 0.0;
+  double plane_rms_before = 0.0;  ///< of owned landmarks, map units
+  double plane_rms_after = 0.0;
+};
+
+/// Final joint refinement of poses, landmarks and planes (the paper's last equation): reprojection with
+/// Huber and (n.v + d)/plane_sigma with Cauchy, planes on the unit sphere x R.
+JointResult refine_jointly(Map& map, const Camera& camera, const JointOptions& options);
+
+}  // namespace planecast::slam
