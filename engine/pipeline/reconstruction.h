@@ -1,0 +1,78 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "slam/data/camera.h"
+#include "slam/data/types.h"
+
+namespace planecast::engine {
+
+/// One frame of a run.
+struct FrameRecord {
+  int index = 0;
+  double timestamp = 0.0;
+  std::string state;   ///< "tracked", "localised", "not-initialised", "lost", "unreadable"
+  std::string reason;  ///< why it is not tracked; empty otherwise
+  int inliers = 0;
+  std::optional<slam::Pose> world_from_cam;         ///< final
+  std::optional<slam::Pose> causal_world_from_cam;  ///< as it was known at that frame
+};
+
+struct KeyframeRecord {
+  int frame_index = 0;
+  double timestamp = 0.0;
+  slam::Pose world_from_cam = slam::Pose::Identity();
+};
+
+/// A plane as in planes.json (design.md section 4).
+struct PlaneRecord {
+  int id = 0;
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, towards the cameras that saw it
+  double offset = 0.0;                                 ///< normal . x + offset = 0
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();    ///< of the plane's own frame
+  Eigen::Vector3d x_axis = Eigen::Vector3d::UnitX();
+  std::string plane_class = "other";
+  int inliers = 0;
+  double rms = 0.0;
+  double area = 0.0;
+  std::vector<Eigen::Vector3d> polygon;  ///< outer ring, counter-clockwise from the normal's side
+  std::vector<std::vector<Eigen::Vector3d>> holes;
+  int label = 0;
+  int first_frame = 0;
+  std::vector<int> merged_from;
+
+  slam::Pose world_from_plane() const;
+};
+
+struct MapPoint {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Vector3f color_rgb = Eigen::Vector3f::Zero();  ///< 0..255
+  int plane = slam::kNone;
+};
+
+/// Milliseconds of one frame by stage name, in the order of the stages.
+using StageTimes = std::vector<std::pair<std::string, double>>;
+
+/// What SLAM leaves behind: in memory, and as the reconstruction folder on disk.
+struct Reconstruction {
+  slam::Camera camera;
+  bool metric = false;  ///< units are metres, else map units
+  std::string mode;     ///< "mono" or "rgbd"
+  std::string segmentation;
+  double median_depth = 1.0;  ///< of the finished map
+  std::vector<FrameRecord> frames;
+  std::vector<KeyframeRecord> keyframes;
+  std::vector<PlaneRecord> planes;
+  std::vector<MapPoint> points;
+  Eigen::Vector3d up = -Eigen::Vector3d::UnitY();  ///< unit, world
+  double up_confidence = 0.0;
+  std::vector<StageTimes> frame_times;             ///< per frame
+  std::map<std::string, std::vector<double>> mapping_times;  ///< per keyframe and stage
+  std::vector<std::string> warnings;
+};
+
+}  // namespace planecast::engine

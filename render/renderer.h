@@ -1,0 +1,42 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "render/scene.h"
+
+namespace planecast::render {
+
+enum class ContextKind { kOsMesa, kEgl };
+
+struct RendererOptions {
+  ContextKind context = ContextKind::kOsMesa;
+  std::string shader_dir;  ///< assets/shaders
+  int msaa_samples = 4;    ///< 4 or 1
+  int shadow_map_size = 1024;
+};
+
+/// Draws offscreen; the same bytes for the same input. Not thread-safe: one renderer, one thread.
+/// Construction throws std::runtime_error with one line when no context can be made.
+class Renderer {
+ public:
+  explicit Renderer(const RendererOptions& options);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  /// Virtual objects, their shadows on the catchers, hidden by the occluders.
+  Layer draw_layer(const LayerScene& scene, const Camera& camera);
+  /// A whole opaque picture with depth and labels. Surfaces are uploaded once a scene object: call
+  /// again with the same `scene` address and unchanged surfaces to reuse them, or forget() first.
+  OpaqueImages draw_opaque(const OpaqueScene& scene, const Camera& camera);
+  void forget();
+  /// "4.5 (Core Profile) Mesa ..." for the record.
+  std::string description() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace planecast::render
