@@ -1,6 +1,8 @@
 #include "slam/data/camera.h"
 
 #include <algorithm>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <cmath>
 #include <numbers>
 
