@@ -275,6 +275,7 @@ FinishResult System::finish() {
   if (map_.keyframes.size() < 2) return result;
   BundleOptions bundle = options_.bundle;
   bundle.iterations = 20;
+  bundle.refine_focal = camera_.guessed;
   result.global = global_bundle(map_, camera_, bundle);
   if (!options_.map_planes) return result;
   plane_mapper_.follow_map(map_);
