@@ -175,7 +175,8 @@ void TwoPassTracker::first_pass() {
     if (position + 1 < count_) ahead.request(first_ + position + 1, initialised);
     FrameRecord& record = frames_[static_cast<std::size_t>(position)];
     record.index = first_ + position;
-    record.timestamp = sequence_.timestamp(record.index);
+    record.timestamp =
+        prepared.image ? prepared.image->timestamp : sequence_.timestamp(record.index);
     if (prepared.image) {
       record_first(position, system_.track(*prepared.image));
     } else {
