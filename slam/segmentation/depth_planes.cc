@@ -17,7 +17,7 @@ struct DepthPlaneOptions {
   double max_seed_chi2 = 2.0;    ///< mean squared residual over the expected, of a 3x3 seed
   double max_block_chi2 = 6.0;   ///< of a block against the region it joins
   double max_merge_chi2 = 5.0;   ///< of each of two touching regions against their common plane
-  double pixel_sigmas = 3.0;     ///< of a pixel that takes a label
+  double pixel_sigmas = 4.0;     ///< of a pixel that takes a label
   double min_share = 0.006;      ///< smallest region, share of the image's blocks
 };
 
