@@ -73,7 +73,8 @@ BundleResult run_bundle(BundleProblem& problem, const Schedule& schedule, Map& m
   if (gauge.other != kNone) restore_distance(problem, gauge.anchor, gauge.other, gauge.distance);
   result.rms_after_px = reprojection_rms_px(problem);
   result.focal_factor = problem.focal_factor;
-  result.removed_observations = apply_bundle(problem, map);
+  write_back(problem, map);
+  result.removed_observations = remove_inactive(problem, map);
   return result;
 }
 
@@ -150,13 +151,7 @@ BundleResult local_bundle(Map& map, const Camera& camera, KeyframeId centre,
 
 BundleResult global_bundle(Map& map, Camera& camera, const BundleOptions& options) {
   if (map.keyframes.empty()) return {};
-  std::vector<KeyframeId> keyframes;
-  for (const Keyframe& keyframe : map.keyframes) keyframes.push_back(keyframe.id);
-  std::vector<LandmarkId> landmarks;
-  for (const Landmark& landmark : map.landmarks) landmarks.push_back(landmark.id);
-  std::vector<char> fixed(keyframes.size(), 0);
-  fixed.front() = 1;
-  BundleProblem problem = collect_bundle(map, camera, keyframes, fixed, landmarks, options);
+  BundleProblem problem = collect_whole_map(map, camera, options);
   // The start may be far off, as after a loop: outliers are told only once it has settled.
   const BundleResult result =
       run_bundle(problem, {options.iterations, options.iterations, options.refine_focal}, map);

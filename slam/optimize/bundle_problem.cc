@@ -109,6 +109,17 @@ BundleProblem collect_bundle(const Map& map, const Camera& camera,
   return problem;
 }
 
+BundleProblem collect_whole_map(const Map& map, const Camera& camera,
+                                const BundleOptions& options) {
+  std::vector<KeyframeId> keyframes;
+  for (const Keyframe& keyframe : map.keyframes) keyframes.push_back(keyframe.id);
+  std::vector<LandmarkId> landmarks;
+  for (const Landmark& landmark : map.landmarks) landmarks.push_back(landmark.id);
+  std::vector<char> fixed(keyframes.size(), 0);
+  fixed.front() = 1;
+  return collect_bundle(map, camera, keyframes, fixed, landmarks, options);
+}
+
 int solve_bundle(BundleProblem& problem, const BundleSolve& solve) {
   ceres::Problem::Options ownership;
   ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -220,7 +231,7 @@ double restore_distance(BundleProblem& problem, int anchor, int other, double di
   return factor;
 }
 
-int apply_bundle(const BundleProblem& problem, Map& map) {
+void write_back(const BundleProblem& problem, Map& map) {
   for (std::size_t i = 0; i < problem.keyframes.size(); ++i) {
     if (problem.fixed[i]) continue;
     map.keyframes.at(problem.keyframes[i]).cam_from_world = pose_from_block(problem.poses[i]);
@@ -228,6 +239,9 @@ int apply_bundle(const BundleProblem& problem, Map& map) {
   for (std::size_t i = 0; i < problem.landmarks.size(); ++i) {
     map.landmarks.at(problem.landmarks[i]).position = problem.points[i];
   }
+}
+
+int remove_inactive(const BundleProblem& problem, Map& map) {
   int removed = 0;
   for (const BundleObservation& seen : problem.observations) {
     if (seen.active) continue;

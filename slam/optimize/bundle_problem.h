@@ -48,6 +48,10 @@ BundleProblem collect_bundle(const Map& map, const Camera& camera,
                              const std::vector<LandmarkId>& landmarks,
                              const BundleOptions& options);
 
+/// All keyframes, of which the first is fixed, and all landmarks. Precondition: there is a
+/// keyframe.
+BundleProblem collect_whole_map(const Map& map, const Camera& camera, const BundleOptions& options);
+
 struct BundleSolve {
   int iterations = 10;
   bool robust = true;  ///< Huber

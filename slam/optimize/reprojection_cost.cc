@@ -134,4 +134,21 @@ bool PointPlaneCost::Evaluate(double const* const* parameters, double* residuals
   return true;
 }
 
+bool CentreDistanceCost::Evaluate(double const* const* parameters, double* residuals,
+                                  double** jacobians) const {
+  const Eigen::Matrix3d rotation = ConstQuaternion(parameters[0]).toRotationMatrix();
+  const Eigen::Vector3d from_anchor =
+      -(rotation.transpose() * ConstVector3(parameters[0] + 4)) - anchor_;
+  const double distance = from_anchor.norm();
+  residuals[0] = inverse_sigma_ * (distance - distance_);
+  if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+  // A step (omega, v) moves the centre by -R^T v, whatever omega.
+  Eigen::Map<Row7> by_pose(jacobians[0]);
+  by_pose.setZero();
+  if (distance > 0.0) {
+    by_pose.segment<3>(3) = -inverse_sigma_ / distance * (rotation * from_anchor).transpose();
+  }
+  return true;
+}
+
 }  // namespace planecast::slam

@@ -99,4 +99,19 @@ class PointPlaneCost final : public ceres::SizedCostFunction<1, 3, 3, 1> {
   double inverse_sigma_;
 };
 
+/// (distance of the camera's centre from `anchor` - distance) / sigma. Block: pose (7). Holds the
+/// scale where nothing else does.
+class CentreDistanceCost final : public ceres::SizedCostFunction<1, 7> {
+ public:
+  CentreDistanceCost(const Eigen::Vector3d& anchor, double distance, double sigma)
+      : anchor_(anchor), distance_(distance), inverse_sigma_(1.0 / sigma) {}
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+ private:
+  Eigen::Vector3d anchor_;
+  double distance_;
+  double inverse_sigma_;
+};
+
 }  // namespace planecast::slam

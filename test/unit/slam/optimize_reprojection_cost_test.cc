@@ -110,6 +110,16 @@ TEST(PointPlaneCost, JacobiansAreTheNumericOnes) {
   }
 }
 
+TEST(CentreDistanceCost, JacobianIsTheNumericOne) {
+  Random random(seed_of("CentreDistanceCost.JacobianIsTheNumericOne"));
+  const PoseManifold manifold;
+  for (int i = 0; i < 20; ++i) {
+    const Pose pose = pose_at(2.0 * gaussian3(random), gaussian3(random));
+    check_jacobians(CentreDistanceCost(gaussian3(random), 1.5, 0.01),
+                    {{as_values(block_from_pose(pose))}, {&manifold}});
+  }
+}
+
 TEST(ReprojectionCost, IsZeroAtTheTruthAndFlatBehindTheCamera) {
   const Camera camera = synthetic::camera();
   const Pose pose = pose_at({0.1, 0.2, -0.1}, {0.1, 0.0, 0.2});
