@@ -7,6 +7,12 @@
 
 namespace planecast::slam {
 
+/// Where a sampled depth point was measured, so that it can follow its keyframe.
+struct DepthAnchor {
+  KeyframeId keyframe = kNone;
+  Eigen::Vector3f point_cam;  ///< metres, in that keyframe's camera
+};
+
 /// A plane landmark: normal . x + offset = 0 in the world, the unit normal on the side of the cameras
 /// that saw it. Its own frame (plane_from_world) has z = normal, its origin at the first centroid and x
 /// along the first observing camera's x; refits turn it by the smallest rotation and shift it along the
@@ -25,7 +31,9 @@ struct Plane {
   int age_keyframes = 0;  ///< keyframes since birth
   std::vector<KeyframeId> observers;  ///< ascending
   std::vector<PlaneId> merged_from;   ///< ids that were merged into this one, ascending
+  int stalled_keyframes = 0;  ///< keyframes since it last gained support
   std::vector<Eigen::Vector3d> depth_points;  ///< RGB-D: sampled support in the world, beside landmarks
+  std::vector<DepthAnchor> depth_anchors;     ///< of depth_points, one each
 
   double signed_distance(const Eigen::Vector3d& point_world) const {
     return normal.dot(point_world) + offset;

@@ -36,7 +36,7 @@ std::optional<PlaneFit> fit_plane(const std::vector<Eigen::Vector3d>& points,
 std::optional<double> intersect_ray(const PlaneEquation& plane, const Eigen::Vector3d& origin,
                                     const Eigen::Vector3d& direction);
 
-/// Twice signed area is positive for counter-clockwise rings; not closed.
+/// Area of a ring (not closed), positive if it is counter-clockwise.
 double signed_area(const std::vector<Eigen::Vector2d>& ring);
 /// Even-odd rule over the outer ring and its holes.
 bool contains_point(const std::vector<Eigen::Vector2d>& outer,
@@ -51,13 +51,14 @@ struct PlaneExtent {
   double area = 0.0;  ///< square map units, without the holes
 };
 
-/// Distance at which points of a plane count as neighbours: three times the median distance to the third
-/// nearest, so that a few dozen landmarks make one patch and far strays none. 0 for fewer than 4 points.
+/// Distance within which points of one plane count as connected: 2.5 times their median spacing, at which
+/// evenly strewn points hang together and far strays do not. 0 for fewer than 4 points.
 double linking_distance(const std::vector<Eigen::Vector3d>& points);
 
-/// Concave outline of points near a plane: an occupancy grid in the plane's frame with cells from
-/// `spacing` (the distance of neighbouring points; <= 0: measured), closed over twice the spacing, largest
-/// connected patch, contours simplified to half a cell. Empty for fewer than 3 points.
+/// Concave outline of points near a plane. `spacing` is the distance of neighbouring points (<= 0: it is
+/// measured). Of the largest cluster of points an occupancy grid in the plane's frame with cells of
+/// spacing / 4 is closed over gaps up to the linking distance and padded by 0.3 spacing; the largest patch's
+/// contours, simplified to a cell, are the extent. Empty for fewer than 3 points.
 PlaneExtent plane_extent(const Plane& plane, const std::vector<Eigen::Vector3d>& points,
                          double spacing);
 

@@ -59,7 +59,6 @@ class PlaneMapper {
   Camera camera_;
   bool rgbd_;
   PlaneScale scale_;
-  int calls_ = 0;
 };
 
 }  // namespace planecast::slam
