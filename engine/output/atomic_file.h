@@ -6,9 +6,10 @@
 
 namespace planecast::engine {
 
-/// Every result file is written under a temporary name in its own folder and renamed when complete, so
-/// that a killed run leaves no half-written file under a final name. All functions throw UserError with
-/// one line that names the file and the system's reason (read-only, full disk, not a folder).
+/// Every result file is written under a temporary name in its own folder and renamed when complete,
+/// so that a killed run leaves no half-written file under a final name. All functions throw
+/// UserError with one line that names the file and the system's reason (read-only, full disk, not a
+/// folder).
 
 /// Creates the folder and its parents where missing.
 void make_folder(const std::filesystem::path& folder);

@@ -193,7 +193,8 @@ PlaneSet read_planes_json(const std::filesystem::path& path) {
   set.metric = units == "metres";
   std::set<int> ids;
   for (const Json& item : file.array("planes")) {
-    const ObjectReader reader(item, fmt::format("{}: plane {} of the list", path.string(), ids.size()));
+    const ObjectReader reader(item,
+                              fmt::format("{}: plane {} of the list", path.string(), ids.size()));
     set.planes.push_back(read_plane(reader));
     if (!ids.insert(set.planes.back().id).second) reader.fail("has the id of another");
   }

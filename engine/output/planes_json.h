@@ -19,8 +19,8 @@ struct PlaneSet {
 
 /// `{"units", "planes": [{"id", "normal", "offset", "class", "inliers", "rms", "area", "polygon",
 /// "holes", "label", "first_frame", "merged_from", "origin", "x_axis"}], "up", "up_confidence"}`.
-/// Numbers read back exactly. Beside the format's own keys, "origin" and "x_axis" give the plane's own
-/// frame, in which anchors are kept.
+/// Numbers read back exactly. Beside the format's own keys, "origin" and "x_axis" give the plane's
+/// own frame, in which anchors are kept.
 std::string planes_json_text(const PlaneSet& set);
 void write_planes_json(const PlaneSet& set, const std::filesystem::path& path);
 

@@ -15,7 +15,8 @@
 namespace planecast::engine {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "points are dumped as they lie in memory");
+static_assert(std::endian::native == std::endian::little,
+              "points are dumped as they lie in memory");
 
 constexpr std::string_view kHeaderBegin =
     "ply\nformat binary_little_endian 1.0\ncomment planecast map points\nelement vertex ";
@@ -25,7 +26,8 @@ constexpr std::string_view kHeaderEnd =
     "property int plane\n"
     "property float image_red\nproperty float image_green\nproperty float image_blue\n"
     "end_header\n";
-constexpr std::size_t kVertexBytes = 3 * sizeof(double) + 3 + sizeof(std::int32_t) + 3 * sizeof(float);
+constexpr std::size_t kVertexBytes =
+    3 * sizeof(double) + 3 + sizeof(std::int32_t) + 3 * sizeof(float);
 
 template <typename T>
 void append(std::string& bytes, const T* values, std::size_t count) {

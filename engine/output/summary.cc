@@ -64,8 +64,7 @@ Summary summarise(const Reconstruction& reconstruction) {
     ++summary.localised;
     inliers += frame.inliers;
     if (previous != nullptr) {
-      summary.path_length +=
-          (frame.world_from_cam->translation() - previous->translation()).norm();
+      summary.path_length += (frame.world_from_cam->translation() - previous->translation()).norm();
     }
     previous = &*frame.world_from_cam;
   }

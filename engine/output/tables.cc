@@ -134,7 +134,8 @@ std::vector<FrameRecord> read_frames_csv(const std::filesystem::path& path) {
     if (line.ends_with('\r')) line.remove_suffix(1);
     if (line_number == 1) {
       if (line != kFramesHeader) {
-        throw UserError(fmt::format("{}:1: the header is not \"{}\"", path.string(), kFramesHeader));
+        throw UserError(
+            fmt::format("{}:1: the header is not \"{}\"", path.string(), kFramesHeader));
       }
     } else if (FrameRecord frame; parse_frame(line, frame)) {
       frames.push_back(std::move(frame));

@@ -9,14 +9,14 @@
 
 namespace planecast::engine {
 
-/// frames.csv: `index,timestamp,state,reason,inliers`, one line a frame, no times of computing, so that
-/// it is repeatable.
+/// frames.csv: `index,timestamp,state,reason,inliers`, one line a frame, no times of computing, so
+/// that it is repeatable.
 void write_frames_csv(const std::vector<FrameRecord>& frames, const std::filesystem::path& path);
 /// Reads it back without poses. Throws UserError naming file and line.
 std::vector<FrameRecord> read_frames_csv(const std::filesystem::path& path);
 
-/// times.csv: `index` and milliseconds by stage (columns in order of first appearance; empty where a
-/// frame had no such stage).
+/// times.csv: `index` and milliseconds by stage (columns in order of first appearance; empty where
+/// a frame had no such stage).
 void write_times_csv(const Reconstruction& reconstruction, const std::filesystem::path& path);
 
 /// Milliseconds of one stage over the run.

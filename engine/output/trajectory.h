@@ -11,8 +11,8 @@ namespace planecast::engine {
 /// Seconds with 6 decimals, or with as many digits as reading back exactly takes.
 std::string format_timestamp(double seconds);
 
-/// TUM text format, one pose a line: `timestamp tx ty tz qx qy qz qw`, world from camera, 12 decimals
-/// (reading back is exact to 1e-11 of a unit), the quaternion with qw >= 0.
+/// TUM text format, one pose a line: `timestamp tx ty tz qx qy qz qw`, world from camera, 12
+/// decimals (reading back is exact to 1e-11 of a unit), the quaternion with qw >= 0.
 std::string trajectory_text(const std::vector<TimedPose>& poses);
 
 /// Throws UserError.

@@ -15,7 +15,8 @@
 namespace planecast::engine {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "numbers are dumped as they lie in memory");
+static_assert(std::endian::native == std::endian::little,
+              "numbers are dumped as they lie in memory");
 
 constexpr std::string_view kMagic("PLNCMAP\0", 8);
 constexpr std::uint32_t kVersion = 1;
@@ -24,10 +25,8 @@ constexpr std::uint32_t kVersion = 1;
 class ByteWriter {
  public:
   template <typename T>
-    requires std::is_arithmetic_v<T>
-  void put(T value) {
-    bytes_.append(reinterpret_cast<const char*>(&value), sizeof(T));
-  }
+  requires std::is_arithmetic_v<T>
+  void put(T value) { bytes_.append(reinterpret_cast<const char*>(&value), sizeof(T)); }
   void put(std::string_view text) {
     put(static_cast<std::uint64_t>(text.size()));
     bytes_ += text;
@@ -49,8 +48,7 @@ class ByteReader {
       : bytes_(bytes), path_(path) {}
 
   template <typename T>
-    requires std::is_arithmetic_v<T>
-  T number() {
+  requires std::is_arithmetic_v<T> T number() {
     T value{};
     std::memcpy(&value, take(sizeof(T)).data(), sizeof(T));
     return value;
@@ -99,7 +97,8 @@ slam::Camera take_camera(ByteReader& in) {
   camera.lens = static_cast<slam::LensModel>(lens);
   camera.width = in.number<std::int32_t>();
   camera.height = in.number<std::int32_t>();
-  for (double* value : {&camera.fx, &camera.fy, &camera.cx, &camera.cy}) *value = in.number<double>();
+  for (double* value : {&camera.fx, &camera.fy, &camera.cx, &camera.cy})
+    *value = in.number<double>();
   for (double& value : camera.distortion) value = in.number<double>();
   camera.guessed = in.number<std::uint8_t>() != 0;
   if (camera.width <= 0 || camera.height <= 0 || !(camera.fx > 0.0) || !(camera.fy != 0.0)) {
