@@ -16,8 +16,8 @@ namespace planecast::slam {
 
 namespace {
 
-/// Indices best first. Without qualities the order is random: keypoints may come sorted by position, which
-/// would make the progressive sampler look at one corner first.
+/// Indices best first. Without qualities the order is random: keypoints may come sorted by
+/// position, which would make the progressive sampler look at one corner first.
 std::vector<int> order_by_quality(std::size_t n, const std::vector<float>& quality,
                                   std::uint64_t seed) {
   std::vector<int> order(n);
@@ -28,7 +28,8 @@ std::vector<int> order_by_quality(std::size_t n, const std::vector<float>& quali
     return order;
   }
   Random random(seed);
-  for (std::size_t i = n; i > 1; --i) std::swap(order[i - 1], order[random.below(static_cast<int>(i))]);
+  for (std::size_t i = n; i > 1; --i)
+    std::swap(order[i - 1], order[random.below(static_cast<int>(i))]);
   return order;
 }
 
@@ -77,7 +78,8 @@ HomographyFit make_fit(const Result& result, int label) {
 void count_over_all(const HomographyModel::Parameters& model, const std::vector<PointPair>& pairs,
                     double threshold, HomographyFit& fit) {
   std::vector<double> squared(pairs.size());
-  HomographyModel(pairs).squared_residuals(model, 0, static_cast<int>(pairs.size()), squared.data());
+  HomographyModel(pairs).squared_residuals(model, 0, static_cast<int>(pairs.size()),
+                                           squared.data());
   fit.inlier.assign(pairs.size(), 0);
   double sum = 0.0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -89,7 +91,8 @@ void count_over_all(const HomographyModel::Parameters& model, const std::vector<
   fit.rms_px = std::sqrt(sum / std::max(fit.num_inliers, 1));
 }
 
-std::vector<PointPair> select(const std::vector<PointPair>& pairs, const std::vector<int>& indices) {
+std::vector<PointPair> select(const std::vector<PointPair>& pairs,
+                              const std::vector<int>& indices) {
   std::vector<PointPair> result;
   result.reserve(indices.size());
   for (const int i : indices) result.push_back(pairs[i]);

@@ -12,7 +12,8 @@ namespace planecast::slam {
 
 namespace {
 
-/// Integer capacities: with floating point the solver's "== 0" tests can leave crumbs that never saturate.
+/// Integer capacities: with floating point the solver's "== 0" tests can leave crumbs that never
+/// saturate.
 constexpr double kCapacityPerUnit = 1048576.0;
 
 long long capacity(double cost) { return std::llround(cost * kCapacityPerUnit); }
@@ -45,7 +46,8 @@ void GraphCut::label(const std::vector<double>& kernel,
     return;
   }
   auto& solver = graph_->solver;
-  solver = cv::detail::GCGraph<long long>();  // copy of an empty one: the vectors keep their capacity
+  solver =
+      cv::detail::GCGraph<long long>();  // copy of an empty one: the vectors keep their capacity
   solver.create(static_cast<unsigned>(n), static_cast<unsigned>(2 * neighbours.size()));
   // Source side = outlier, which is also where the solver leaves a vertex without preference.
   for (int p = 0; p < n; ++p) {

@@ -7,13 +7,15 @@
 
 namespace planecast::slam {
 
-/// Inlier-outlier labelling by a minimum cut, with the energy of Graph-Cut RANSAC (Barath and Matas,
-/// CVPR 2018, equations 1-3). K_p = exp(-r_p^2 / (2 eps^2)) is point p's kernel:
+/// Inlier-outlier labelling by a minimum cut, with the energy of Graph-Cut RANSAC (Barath and
+/// Matas, CVPR 2018, equations 1-3). K_p = exp(-r_p^2 / (2 eps^2)) is point p's kernel:
 ///   unary            p outlier: K_p                  p inlier: 1 - K_p
-///   pair, x lambda   both outliers: (K_p + K_q) / 2  both inliers: 1 - (K_p + K_q) / 2  different: 1
-/// Later public implementations charge nothing for two far points both labelled inlier; with that form a
-/// spatial cluster of gross outliers becomes inlier at the lambdas used here, with this one it does not.
-/// A gross outlier amid inliers may still be labelled inlier: callers also gate by the residual.
+///   pair, x lambda   both outliers: (K_p + K_q) / 2  both inliers: 1 - (K_p + K_q) / 2  different:
+///   1
+/// Later public implementations charge nothing for two far points both labelled inlier; with that
+/// form a spatial cluster of gross outliers becomes inlier at the lambdas used here, with this one
+/// it does not. A gross outlier amid inliers may still be labelled inlier: callers also gate by the
+/// residual.
 class GraphCut {
  public:
   GraphCut();
@@ -21,7 +23,8 @@ class GraphCut {
   GraphCut(const GraphCut&) = delete;
   GraphCut& operator=(const GraphCut&) = delete;
 
-  /// Labels every point: inlier[p] = 1 or 0, ties outlier. Costs are exact to 2^-20. Reuses its memory.
+  /// Labels every point: inlier[p] = 1 or 0, ties outlier. Costs are exact to 2^-20. Reuses its
+  /// memory.
   void label(const std::vector<double>& kernel, const std::vector<NeighbourPair>& neighbours,
              double lambda, std::vector<char>& inlier);
 

@@ -13,35 +13,35 @@
 namespace planecast::slam {
 
 /// Graph-Cut RANSAC with the outer loop and the residual threshold of Shu et al., "Visual SLAM with
-/// Graph-Cut Optimized Multi-Plane Reconstruction" (ISMAR 2021), Algorithm 1. Distances are in the unit
-/// of the model's residual (pixels or map units).
+/// Graph-Cut Optimized Multi-Plane Reconstruction" (ISMAR 2021), Algorithm 1. Distances are in the
+/// unit of the model's residual (pixels or map units).
 struct RansacOptions {
-  double threshold = 2.0;         ///< eps_d: inlier distance
-  double max_rms = 1.0;           ///< eps_L: accepted RMS of the inliers' distances
-  double lambda = 0.975;          ///< spatial coherence
-  double confidence = 0.99;       ///< mu of the stopping rule [P]
-  int max_rounds = 50;            ///< N, outer loop [P]
-  int max_inner = 1000;           ///< [D] bound of N_GC
-  int max_samples = 3000;         ///< [D] bound over all rounds: hopeless data must cost little
-  int max_stagnant_rounds = 3;    ///< [D] outer rounds without a better model end the search
-  int subsets_per_cut = 4;        ///< [D] random subsets tried per labelling; a cut costs as much as many
-  int max_cuts = 8;               ///< per local optimisation
-  int final_rounds = 4;           ///< least squares and new inliers, alternating
+  double threshold = 2.0;       ///< eps_d: inlier distance
+  double max_rms = 1.0;         ///< eps_L: accepted RMS of the inliers' distances
+  double lambda = 0.975;        ///< spatial coherence
+  double confidence = 0.99;     ///< mu of the stopping rule [P]
+  int max_rounds = 50;          ///< N, outer loop [P]
+  int max_inner = 1000;         ///< [D] bound of N_GC
+  int max_samples = 3000;       ///< [D] bound over all rounds: hopeless data must cost little
+  int max_stagnant_rounds = 3;  ///< [D] outer rounds without a better model end the search
+  int subsets_per_cut = 4;  ///< [D] random subsets tried per labelling; a cut costs as much as many
+  int max_cuts = 4;         ///< per local optimisation
+  int final_rounds = 2;     ///< least squares and new inliers, alternating
   int min_inliers = 12;
   double min_inlier_ratio = 0.0;
-  bool graph_cut = true;          ///< false: plain RANSAC, no local optimisation, for the ablation
+  bool graph_cut = true;  ///< false: plain RANSAC, no local optimisation, for the ablation
   std::uint64_t seed = 1;
 };
 
 template <typename Parameters>
 struct RansacResult {
   Parameters model;
-  bool found = false;      ///< a model exists at all; the rest is about it
-  bool accepted = false;   ///< count, ratio and RMS are met
+  bool found = false;     ///< a model exists at all; the rest is about it
+  bool accepted = false;  ///< count, ratio and RMS are met
   std::vector<char> inlier;
   int num_inliers = 0;
-  double rms = 0.0;        ///< of the inliers' distances
-  double score = 0.0;      ///< sum of the kernels
+  double rms = 0.0;    ///< of the inliers' distances
+  double score = 0.0;  ///< sum of the kernels
   int samples = 0;
   int rounds = 0;
   int cuts = 0;
@@ -59,15 +59,16 @@ struct RansacResult {
 ///     // Squared distances of points begin .. end-1 to out[0 ..]; infinite: can be no inlier.
 ///     void squared_residuals(const Parameters& model, int begin, int end, double* out) const;
 ///   };
-/// A Sampler has draw(Random&, int* sample). Nothing is allocated inside the loops but by the first cut.
+/// A Sampler has draw(Random&, int* sample). Nothing is allocated inside the loops but by the first
+/// cut.
 template <typename Model, typename Sampler>
 class GraphCutRansac {
  public:
   using Parameters = typename Model::Parameters;
   using Result = RansacResult<Parameters>;
 
-  GraphCutRansac(const Model& model, Sampler& sampler,
-                 const std::vector<NeighbourPair>& neighbours, const RansacOptions& options)
+  GraphCutRansac(const Model& model, Sampler& sampler, const std::vector<NeighbourPair>& neighbours,
+                 const RansacOptions& options)
       : model_(model),
         sampler_(sampler),
         neighbours_(neighbours),
@@ -110,7 +111,8 @@ class GraphCutRansac {
     return std::exp(-0.5 * squared_residual / (options_.threshold * options_.threshold));
   }
   bool in_reach(double squared_residual) const {
-    return squared_residual < kSupportReach * kSupportReach * options_.threshold * options_.threshold;
+    return squared_residual <
+           kSupportReach * kSupportReach * options_.threshold * options_.threshold;
   }
   bool is_close(double squared_residual) const {
     return squared_residual < options_.threshold * options_.threshold;
@@ -121,8 +123,8 @@ class GraphCutRansac {
     int inliers = 0;
   };
 
-  /// Sum of kernels and number of points within the threshold; gives up (score -1) where `to_beat` is out
-  /// of reach even if all that is left fitted perfectly.
+  /// Sum of kernels and number of points within the threshold; gives up (score -1) where `to_beat`
+  /// is out of reach even if all that is left fitted perfectly.
   Support support_of(const Parameters& model, double to_beat) const {
     std::array<double, kBlock> squared;
     Support support{0.0, 0};
@@ -172,8 +174,8 @@ class GraphCutRansac {
     best_inliers_ = support.inliers;
   }
 
-  /// Cut, fit to random subsets of the cut's inliers, again while the support grows (Barath and Matas
-  /// 2018, Algorithm 2).
+  /// Cut, fit to random subsets of the cut's inliers, again while the support grows (Barath and
+  /// Matas 2018, Algorithm 2).
   void optimise_locally(Result& result) {
     const int size = 7 * Model::kSampleSize;
     Parameters model;
@@ -192,15 +194,16 @@ class GraphCutRansac {
     }
   }
 
-  /// Labels all points and collects in candidates_ those labelled inlier within `reach` thresholds: the
-  /// cut alone would also keep gross outliers that lie amid inliers.
+  /// Labels all points and collects in candidates_ those labelled inlier within `reach` thresholds:
+  /// the cut alone would also keep gross outliers that lie amid inliers.
   void label_by_cut(const Parameters& model, double reach, Result& result) {
     squared_.resize(kernel_.size());
     model_.squared_residuals(model, 0, n_, squared_.data());
     const double limit = reach * reach * options_.threshold * options_.threshold;
     if (options_.graph_cut) {
       ++result.cuts;
-      for (int i = 0; i < n_; ++i) kernel_[i] = in_reach(squared_[i]) ? kernel_of(squared_[i]) : 0.0;
+      for (int i = 0; i < n_; ++i)
+        kernel_[i] = in_reach(squared_[i]) ? kernel_of(squared_[i]) : 0.0;
       cut_.label(kernel_, neighbours_, options_.lambda, label_);
     } else {
       std::fill(label_.begin(), label_.end(), 1);
@@ -256,7 +259,6 @@ class GraphCutRansac {
                       result.num_inliers >= options_.min_inlier_ratio * n_ &&
                       result.rms < options_.max_rms;
   }
-
 
   const Model& model_;
   Sampler& sampler_;

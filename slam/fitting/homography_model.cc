@@ -17,8 +17,8 @@ constexpr double kMinDoubleArea = 20.0;
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// Four points as a projective basis: homogeneous p3 = sum of weight_i p_i / area, with the doubled signed
-/// areas of the triangles.
+/// Four points as a projective basis: homogeneous p3 = sum of weight_i p_i / area, with the doubled
+/// signed areas of the triangles.
 struct Basis {
   Matrix3d points;    ///< columns (x, y, 1) of the first three
   Matrix3d adjugate;  ///< points^-1 * area
@@ -38,7 +38,8 @@ Basis make_basis(const Vector2d& p0, const Vector2d& p1, const Vector2d& p2, con
 }
 
 bool is_degenerate(const Basis& basis) {
-  return std::abs(basis.area) < kMinDoubleArea || basis.weight.cwiseAbs().minCoeff() < kMinDoubleArea;
+  return std::abs(basis.area) < kMinDoubleArea ||
+         basis.weight.cwiseAbs().minCoeff() < kMinDoubleArea;
 }
 
 /// Shift and scale that bring points to mean 0 and mean distance sqrt(2).
@@ -99,8 +100,9 @@ Matrix9d normal_matrix(const std::vector<PointPair>& pairs, const std::vector<in
   return m;
 }
 
-/// By inverse iteration, a tenth of the time of a whole decomposition. The eigenvalue sought is the noise's
-/// and far below the next, so that few steps do; the shift keeps the factorisation of exact data regular.
+/// By inverse iteration, a tenth of the time of a whole decomposition. The eigenvalue sought is the
+/// noise's and far below the next, so that few steps do; the shift keeps the factorisation of exact
+/// data regular.
 Vector9d smallest_eigenvector(Matrix9d m) {
   constexpr int kSteps = 4;
   m.diagonal().array() += 1e-14 * m.trace();

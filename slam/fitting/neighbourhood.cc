@@ -80,7 +80,8 @@ void link_nearest(const std::vector<CellItem>& items, int begin, int end, int i,
   for (int j = i - 1; j >= begin && offer(j); --j) {
   }
   for (int k = 0; k < nearest.size(); ++k) {
-    out.push_back({std::min(centre.index, nearest.index(k)), std::max(centre.index, nearest.index(k))});
+    out.push_back(
+        {std::min(centre.index, nearest.index(k)), std::max(centre.index, nearest.index(k))});
   }
 }
 
@@ -120,11 +121,10 @@ void sort_unique(std::vector<NeighbourPair>& pairs) {
   const auto key = [](const NeighbourPair& pair) { return std::pair(pair.a, pair.b); };
   std::sort(pairs.begin(), pairs.end(),
             [&](const NeighbourPair& a, const NeighbourPair& b) { return key(a) < key(b); });
-  pairs.erase(std::unique(pairs.begin(), pairs.end(),
-                          [&](const NeighbourPair& a, const NeighbourPair& b) {
-                            return key(a) == key(b);
-                          }),
-              pairs.end());
+  pairs.erase(
+      std::unique(pairs.begin(), pairs.end(),
+                  [&](const NeighbourPair& a, const NeighbourPair& b) { return key(a) == key(b); }),
+      pairs.end());
 }
 
 }  // namespace planecast::slam

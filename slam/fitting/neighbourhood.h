@@ -26,19 +26,20 @@ struct GridOptions {
   int max_neighbours = kNearestNeighbours;
 };
 
-/// Matches are neighbours if they share the grid cell in both images; of those each keeps its nearest
-/// (in the reference image). Every unordered pair once, ascending. O(n sqrt(cell)) typically, no matrix.
+/// Matches are neighbours if they share the grid cell in both images; of those each keeps its
+/// nearest (in the reference image). Every unordered pair once, ascending. O(n sqrt(cell))
+/// typically, no matrix.
 std::vector<NeighbourPair> image_grid_neighbours(const std::vector<PointPair>& pairs, int width,
                                                  int height, const GridOptions& options = {});
 
-/// Points closer than `radius`; of those each keeps its nearest. FLANN's exact single KD-tree, which is
-/// repeatable, unlike its randomised indices. Every unordered pair once, ascending.
+/// Points closer than `radius`; of those each keeps its nearest. FLANN's exact single KD-tree,
+/// which is repeatable, unlike its randomised indices. Every unordered pair once, ascending.
 std::vector<NeighbourPair> radius_neighbours(const std::vector<Eigen::Vector3d>& points,
                                              double radius,
                                              int max_neighbours = kNearestNeighbours);
 
-/// The `count` nearest other points of each point and their distances, row-major, nearest first; fewer
-/// points than that leave -1 and infinity.
+/// The `count` nearest other points of each point and their distances, row-major, nearest first;
+/// fewer points than that leave -1 and infinity.
 struct NearestTable {
   int count = 0;
   std::vector<int> index;

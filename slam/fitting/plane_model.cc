@@ -48,14 +48,12 @@ bool PlaneModel::fit_least_squares(const std::vector<int>& points, Parameters& m
   return true;
 }
 
-void PlaneModel::squared_residuals(const Parameters& model, int begin, int end,
-                                   double* out) const {
+void PlaneModel::squared_residuals(const Parameters& model, int begin, int end, double* out) const {
   for (int i = begin; i < end; ++i) {
     const double distance = model.signed_distance(points_.positions[i]);
     double squared = distance * distance;
     if (!weights_.empty()) squared *= weights_[i];
-    const bool behind =
-        !points_.view_from.empty() && points_.view_from[i].dot(model.normal) <= 0.0;
+    const bool behind = !points_.view_from.empty() && points_.view_from[i].dot(model.normal) <= 0.0;
     *out++ = behind ? HUGE_VAL : squared;
   }
 }

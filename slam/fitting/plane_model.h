@@ -18,9 +18,9 @@ struct PlanePoints {
   int size() const { return static_cast<int>(positions.size()); }
 };
 
-/// Planes for GraphCutRansac, over the points given (kept by reference). Residual: point-plane distance
-/// divided by the point's band; infinite for a point seen from behind the plane. Normals point to the side
-/// from which the sample was seen.
+/// Planes for GraphCutRansac, over the points given (kept by reference). Residual: point-plane
+/// distance divided by the point's band; infinite for a point seen from behind the plane. Normals
+/// point to the side from which the sample was seen.
 class PlaneModel {
  public:
   using Parameters = PlaneEquation;

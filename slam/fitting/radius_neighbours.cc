@@ -43,7 +43,8 @@ std::vector<NeighbourPair> radius_neighbours(const std::vector<Eigen::Vector3d>&
   index.radiusSearch(data, found, squared, static_cast<float>(radius * radius), params);
   for (std::size_t i = 0; i < found.size(); ++i) {
     for (const std::size_t j : found[i]) {
-      if (j != i) result.push_back({static_cast<int>(std::min(i, j)), static_cast<int>(std::max(i, j))});
+      if (j != i)
+        result.push_back({static_cast<int>(std::min(i, j)), static_cast<int>(std::max(i, j))});
     }
   }
   sort_unique(result);

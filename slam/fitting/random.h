@@ -4,8 +4,9 @@
 
 namespace planecast::slam {
 
-/// Small seeded generator (SplitMix64, Steele et al., OOPSLA 2014): the same numbers with every standard
-/// library, unlike std::uniform_int_distribution, and free to create, so that every task has its own.
+/// Small seeded generator (SplitMix64, Steele et al., OOPSLA 2014): the same numbers with every
+/// standard library, unlike std::uniform_int_distribution, and free to create, so that every task
+/// has its own.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}

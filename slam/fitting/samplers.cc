@@ -20,7 +20,10 @@ constexpr int kCentreDraws = 400;
 }  // namespace
 
 ProsacSampler::ProsacSampler(int n, int sample_size)
-    : n_(n), sample_size_(sample_size), pool_(sample_size), growth_(static_cast<std::size_t>(n) + 1) {
+    : n_(n),
+      sample_size_(sample_size),
+      pool_(sample_size),
+      growth_(static_cast<std::size_t>(n) + 1) {
   double expected = kProsacDraws;  // T_m
   for (int i = 0; i < sample_size; ++i) expected *= static_cast<double>(sample_size - i) / (n - i);
   int total = 1;
@@ -75,9 +78,8 @@ ProgressiveNapsacSampler::Layer ProgressiveNapsacSampler::build_layer(
   layer.begin.resize(pairs.size());
   layer.size.resize(pairs.size());
   std::iota(layer.items.begin(), layer.items.end(), 0);
-  std::sort(layer.items.begin(), layer.items.end(), [&](int a, int b) {
-    return cell[a] != cell[b] ? cell[a] < cell[b] : a < b;
-  });
+  std::sort(layer.items.begin(), layer.items.end(),
+            [&](int a, int b) { return cell[a] != cell[b] ? cell[a] < cell[b] : a < b; });
   const int n = static_cast<int>(pairs.size());
   for (int first = 0, last = 0; first < n; first = last) {
     while (last < n && cell[layer.items[last]] == cell[layer.items[first]]) ++last;

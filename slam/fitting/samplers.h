@@ -18,8 +18,8 @@ class UniformSampler {
   int sample_size_;
 };
 
-/// PROSAC (Chum and Matas, CVPR 2005): points are sorted best first; the pool from which samples come
-/// grows from the best few to all as the growth function T' prescribes.
+/// PROSAC (Chum and Matas, CVPR 2005): points are sorted best first; the pool from which samples
+/// come grows from the best few to all as the growth function T' prescribes.
 class ProsacSampler {
  public:
   ProsacSampler(int n, int sample_size);
@@ -35,9 +35,9 @@ class ProsacSampler {
   std::vector<int> growth_;  ///< indexed by pool size
 };
 
-/// Progressive NAPSAC (Barath et al., arXiv 1906.02295): samples are first local, from one grid cell of
-/// both images, finest grid first; each point's neighbourhood grows with the times it was the centre and
-/// ends as all points, that is as PROSAC. Matches are sorted by quality, best first.
+/// Progressive NAPSAC (Barath et al., arXiv 1906.02295): samples are first local, from one grid
+/// cell of both images, finest grid first; each point's neighbourhood grows with the times it was
+/// the centre and ends as all points, that is as PROSAC. Matches are sorted by quality, best first.
 class ProgressiveNapsacSampler {
  public:
   ProgressiveNapsacSampler(const std::vector<PointPair>& pairs, int width, int height,
@@ -60,9 +60,9 @@ class ProgressiveNapsacSampler {
   int draws_ = 0;
   ProsacSampler global_;
   std::vector<Layer> layers_;
-  std::vector<int> hits_;          ///< per point: times it was the centre
-  std::vector<int> neighbours_;    ///< per point: size of its neighbourhood, without itself
-  std::vector<int> layer_;         ///< per point: finest grid whose cell holds that many
+  std::vector<int> hits_;        ///< per point: times it was the centre
+  std::vector<int> neighbours_;  ///< per point: size of its neighbourhood, without itself
+  std::vector<int> layer_;       ///< per point: finest grid whose cell holds that many
 };
 
 }  // namespace planecast::slam

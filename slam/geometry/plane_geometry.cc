@@ -13,7 +13,8 @@ namespace planecast::slam {
 
 namespace {
 
-/// Spread of the second direction relative to the first below which points count as being on a line.
+/// Spread of the second direction relative to the first below which points count as being on a
+/// line.
 constexpr double kMinSpread = 1e-6;
 
 bool crosses_upward_ray(const Eigen::Vector2d& a, const Eigen::Vector2d& b,

@@ -23,16 +23,17 @@ struct PlaneFit {
   double rms = 0.0;  ///< weighted, of the distances
 };
 
-/// Least-squares plane through the (weighted) centroid along the scatter's smallest singular direction; the
-/// normal's sign is arbitrary. Nothing for fewer than 3 points or where they lie on a line.
+/// Least-squares plane through the (weighted) centroid along the scatter's smallest singular
+/// direction; the normal's sign is arbitrary. Nothing for fewer than 3 points or where they lie on
+/// a line.
 std::optional<PlaneFit> fit_plane(const std::vector<Eigen::Vector3d>& points);
 /// The same over `indices`, each with weight w_i (of its squared distance); `weights` may be empty.
 std::optional<PlaneFit> fit_plane(const std::vector<Eigen::Vector3d>& points,
                                   const std::vector<int>& indices,
                                   const std::vector<double>& weights);
 
-/// Distance along the ray where it meets the plane, in units of `direction`'s length; nothing behind the
-/// origin or where the ray runs along the plane (|cos| < 1e-9).
+/// Distance along the ray where it meets the plane, in units of `direction`'s length; nothing
+/// behind the origin or where the ray runs along the plane (|cos| < 1e-9).
 std::optional<double> intersect_ray(const PlaneEquation& plane, const Eigen::Vector3d& origin,
                                     const Eigen::Vector3d& direction);
 
@@ -51,14 +52,15 @@ struct PlaneExtent {
   double area = 0.0;  ///< square map units, without the holes
 };
 
-/// Distance within which points of one plane count as connected: 2.5 times their median spacing, at which
-/// evenly strewn points hang together and far strays do not. 0 for fewer than 4 points.
+/// Distance within which points of one plane count as connected: 2.5 times their median spacing, at
+/// which evenly strewn points hang together and far strays do not. 0 for fewer than 4 points.
 double linking_distance(const std::vector<Eigen::Vector3d>& points);
 
-/// Concave outline of points near a plane. `spacing` is the distance of neighbouring points (<= 0: it is
-/// measured). Of the largest cluster of points an occupancy grid in the plane's frame with cells of
-/// spacing / 4 is closed over gaps up to the linking distance and padded by 0.3 spacing; the largest patch's
-/// contours, simplified to a cell, are the extent. Empty for fewer than 3 points.
+/// Concave outline of points near a plane. `spacing` is the distance of neighbouring points (<= 0:
+/// it is measured). Of the largest cluster of points an occupancy grid in the plane's frame with
+/// cells of spacing / 4 is closed over gaps up to the linking distance and padded by 0.3 spacing;
+/// the largest patch's contours, simplified to a cell, are the extent. Empty for fewer than 3
+/// points.
 PlaneExtent plane_extent(const Plane& plane, const std::vector<Eigen::Vector3d>& points,
                          double spacing);
 

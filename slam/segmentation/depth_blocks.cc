@@ -45,7 +45,8 @@ DepthBlocks sum_blocks(const cv::Mat& depth, const cv::Mat& rays, int size_px) {
     const cv::Vec2f* ray = rays.ptr<cv::Vec2f>(y);
     InverseDepthSums* row = &blocks.sums[static_cast<std::size_t>(y / size_px * blocks.cols)];
     for (int x = 0; x < depth.cols; ++x) {
-      if (z[x] > 0.0F) row[x / size_px].add(ray[x][0], ray[x][1], 1.0 / z[x], inverse_depth_sigma(z[x]));
+      if (z[x] > 0.0F)
+        row[x / size_px].add(ray[x][0], ray[x][1], 1.0 / z[x], inverse_depth_sigma(z[x]));
     }
   }
   return blocks;

@@ -6,9 +6,9 @@
 
 namespace planecast::slam {
 
-/// Sums of a least-squares plane in inverse depth: seen by a pinhole, a plane is 1/z = theta . (x, y, 1)
-/// over the rays (x, y, 1). A structured-light sensor's noise is nearly constant in 1/z, so that all pixels
-/// weigh the same, and sums of regions add up.
+/// Sums of a least-squares plane in inverse depth: seen by a pinhole, a plane is 1/z = theta . (x,
+/// y, 1) over the rays (x, y, 1). A structured-light sensor's noise is nearly constant in 1/z, so
+/// that all pixels weigh the same, and sums of regions add up.
 struct InverseDepthSums {
   Eigen::Matrix3d rays = Eigen::Matrix3d::Zero();   ///< sum of r r^T, r = (x, y, 1)
   Eigen::Vector3d cross = Eigen::Vector3d::Zero();  ///< sum of r / z

@@ -12,13 +12,13 @@ namespace planecast::slam {
 namespace {
 
 struct DepthPlaneOptions {
-  int blocks_per_row = 80;       ///< normals are taken at an eighth of 640 px
-  double min_filled = 0.6;       ///< share of a block's pixels that must have depth
-  double max_seed_chi2 = 2.0;    ///< mean squared residual over the expected, of a 3x3 seed
-  double max_block_chi2 = 6.0;   ///< of a block against the region it joins
-  double max_merge_chi2 = 5.0;   ///< of each of two touching regions against their common plane
-  double pixel_sigmas = 4.0;     ///< of a pixel that takes a label
-  double min_share = 0.006;      ///< smallest region, share of the image's blocks
+  int blocks_per_row = 80;      ///< normals are taken at an eighth of 640 px
+  double min_filled = 0.6;      ///< share of a block's pixels that must have depth
+  double max_seed_chi2 = 2.0;   ///< mean squared residual over the expected, of a 3x3 seed
+  double max_block_chi2 = 6.0;  ///< of a block against the region it joins
+  double max_merge_chi2 = 5.0;  ///< of each of two touching regions against their common plane
+  double pixel_sigmas = 4.0;    ///< of a pixel that takes a label
+  double min_share = 0.006;     ///< smallest region, share of the image's blocks
 };
 
 struct Region {
@@ -150,7 +150,8 @@ class RegionGrower {
     grow(region);
   }
 
-  /// The sensor bends large planes by more than its noise, which cuts them up; what fits together is joined.
+  /// The sensor bends large planes by more than its noise, which cuts them up; what fits together
+  /// is joined.
   void merge_touching(std::vector<Region>& regions) const {
     for (std::size_t i = 0; i < regions.size(); ++i) {
       for (std::size_t j = i + 1; j < regions.size();) {
@@ -176,7 +177,8 @@ class RegionGrower {
   bool touch(const Region& a, const Region& b) const {
     std::vector<char> near(region_of_.size(), 0);
     for (const int block : a.blocks) visit_square(block, [&](int other) { near[other] = 1; });
-    return std::any_of(b.blocks.begin(), b.blocks.end(), [&](int block) { return near[block] != 0; });
+    return std::any_of(b.blocks.begin(), b.blocks.end(),
+                       [&](int block) { return near[block] != 0; });
   }
 
   const DepthBlocks& blocks_;
@@ -184,13 +186,15 @@ class RegionGrower {
   std::vector<int> region_of_;
 };
 
-/// Labels the pixels of a region's blocks and of those around them that lie on its plane; where regions
-/// compete, the smaller residual wins.
+/// Labels the pixels of a region's blocks and of those around them that lie on its plane; where
+/// regions compete, the smaller residual wins.
 class PixelLabeller {
  public:
   PixelLabeller(const cv::Mat& depth, const cv::Mat& rays, const DepthBlocks& blocks,
                 double max_sigmas)
-      : depth_(depth), rays_(rays), blocks_(blocks),
+      : depth_(depth),
+        rays_(rays),
+        blocks_(blocks),
         labels_(cv::Mat::zeros(depth.size(), CV_16U)),
         sigmas_(depth.size(), CV_32F, cv::Scalar(max_sigmas)) {}
 
@@ -216,8 +220,9 @@ class PixelLabeller {
 
   void paint_block(int block, const Eigen::Vector3d& theta, int label) {
     const int size = blocks_.size_px;
-    const cv::Rect area = cv::Rect(block % blocks_.cols * size, block / blocks_.cols * size, size, size) &
-                          cv::Rect(0, 0, depth_.cols, depth_.rows);
+    const cv::Rect area =
+        cv::Rect(block % blocks_.cols * size, block / blocks_.cols * size, size, size) &
+        cv::Rect(0, 0, depth_.cols, depth_.rows);
     for (int y = area.y; y < area.br().y; ++y) {
       const float* z = depth_.ptr<float>(y);
       const cv::Vec2f* ray = rays_.ptr<cv::Vec2f>(y);
@@ -247,8 +252,7 @@ cv::Mat rays_of(const Camera& camera) {
   for (int y = 0; y < rays.rows; ++y) {
     for (int x = 0; x < rays.cols; ++x) {
       const Eigen::Vector2d raw(x, y);
-      const Eigen::Vector3d ray =
-          camera.ray(camera.has_distortion() ? camera.undistort(raw) : raw);
+      const Eigen::Vector3d ray = camera.ray(camera.has_distortion() ? camera.undistort(raw) : raw);
       rays.at<cv::Vec2f>(y, x) = {static_cast<float>(ray.x()), static_cast<float>(ray.y())};
     }
   }

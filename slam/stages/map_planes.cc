@@ -39,7 +39,8 @@ double mean_distance(const Map& map, KeyframeId id) {
   return count == 0 ? 0.0 : sum / count;
 }
 
-/// Thresholds for this keyframe. Mono follows the median depth; RGB-D keeps what the first keyframe gave.
+/// Thresholds for this keyframe. Mono follows the median depth; RGB-D keeps what the first keyframe
+/// gave.
 PlaneScale scale_at(const Map& map, KeyframeId keyframe, const PlaneMappingOptions& options,
                     bool rgbd, const PlaneScale& previous) {
   if (rgbd && previous.eps_d > 0.0) return previous;
@@ -68,7 +69,8 @@ void PlaneMapper::update(Map& map, KeyframeId keyframe, PlaneMappingStats& stats
   const PlaneContext context{options_, scale_, camera_, rgbd_};
   KeyframePoints shown;
   {
-    // What an existing plane explains must not become a second plane, so that planes grow first [D].
+    // What an existing plane explains must not become a second plane, so that planes grow first
+    // [D].
     const StepTimer timer(stats.merge_expand_ms);
     shown = gather_points(map, keyframe, context);
     stats.expanded += expand_planes(map, keyframe, context, shown);

@@ -16,26 +16,27 @@ namespace planecast::slam {
 
 namespace {
 
-/// What a fit must show beyond count and RMS to be a plane and not a slab cut out of clutter [D]. A slab of
-/// scattered points has as many points beside it as in it, its points' neighbours in the image are others',
-/// and many such slabs run along the viewing rays.
+/// What a fit must show beyond count and RMS to be a plane and not a slab cut out of clutter [D]. A
+/// slab of scattered points has as many points beside it as in it, its points' neighbours in the
+/// image are others', and many such slabs run along the viewing rays.
 struct PlausibilityOptions {
-  double min_contrast = 2.5;       ///< density inside the band over that between 1 and 3 bands
-  double min_coherence = 0.45;     ///< share of the inliers' nearest image neighbours that are inliers
+  double min_contrast = 2.5;    ///< density inside the band over that between 1 and 3 bands
+  double min_coherence = 0.45;  ///< share of the inliers' nearest image neighbours that are inliers
   int coherence_neighbours = 6;
-  int min_coherent_neighbours = 2; ///< an inlier with fewer is dropped
-  double min_view_cosine = 0.1;    ///< mean, of viewing rays to the normal
-  double min_breadth = 1.5;        ///< standard deviation along the shorter side, in eps_d
-  double min_slimness = 0.07;      ///< of the shorter side over the longer
-  int min_unmasked = 20;           ///< inliers, where no mask speaks for the plane
+  int min_coherent_neighbours = 2;  ///< an inlier with fewer is dropped
+  double min_view_cosine = 0.1;     ///< mean, of viewing rays to the normal
+  double min_breadth = 1.5;         ///< standard deviation along the shorter side, in eps_d
+  double min_slimness = 0.07;       ///< of the shorter side over the longer
+  int min_unmasked = 20;            ///< inliers, where no mask speaks for the plane
 };
 
-constexpr double kMinMaskRatio = 0.3;   ///< of a mask group's points that must be inliers
+constexpr double kMinMaskRatio = 0.3;  ///< of a mask group's points that must be inliers
 constexpr int kMaxModelsWithoutMasks = 5;
 constexpr int kMaxSamples = 1000;
 
-/// Half of the samples are uniform [P], half are a point and two of its neighbours in the image [D]: without
-/// masks a plane may have a tenth of the points, of which uniform samples find a thousandth.
+/// Half of the samples are uniform [P], half are a point and two of its neighbours in the image
+/// [D]: without masks a plane may have a tenth of the points, of which uniform samples find a
+/// thousandth.
 class LocalPlaneSampler {
  public:
   LocalPlaneSampler(const NearestTable& nearest, const std::vector<int>& pool)
@@ -55,7 +56,8 @@ class LocalPlaneSampler {
     random.distinct(static_cast<int>(choice.size()), nearest_.count, choice.data());
     sample[0] = centre;
     for (std::size_t k = 0; k < choice.size(); ++k) {
-      const int point = nearest_.index[static_cast<std::size_t>(pool_[centre]) * nearest_.count + choice[k]];
+      const int point =
+          nearest_.index[static_cast<std::size_t>(pool_[centre]) * nearest_.count + choice[k]];
       if (point < 0 || in_pool_[point] < 0) return false;
       sample[k + 1] = in_pool_[point];
     }
@@ -154,8 +156,8 @@ class PlaneFinder {
       neighbours = radius_neighbours(points.positions, 2.0 * context_.scale.eps_d);
     }
     RansacOptions options = ransac_options(min_ratio);
-    options.seed = mix_seed(context_.options.seed,
-                            static_cast<std::uint64_t>(keyframe_) * 4096 + ++fits_);
+    options.seed =
+        mix_seed(context_.options.seed, static_cast<std::uint64_t>(keyframe_) * 4096 + ++fits_);
     const auto result = run(model, group, neighbours, options);
     if (!result.accepted) return std::nullopt;
     Candidate candidate;
@@ -203,8 +205,8 @@ class PlaneFinder {
       sum += count;
       if (count >= plausible_.min_coherent_neighbours) kept.push_back(i);
     }
-    const double most = static_cast<double>(candidate.inliers.size()) *
-                        plausible_.coherence_neighbours;
+    const double most =
+        static_cast<double>(candidate.inliers.size()) * plausible_.coherence_neighbours;
     if (sum < plausible_.min_coherence * most) kept.clear();
     candidate.inliers = std::move(kept);
   }
@@ -248,8 +250,8 @@ class PlaneFinder {
            shorter > plausible_.min_slimness * longer;
   }
 
-  /// Whether points crowd in the band. Beside it count the points over the same patch that no plane owns or
-  /// one that is nearly parallel, so that no second layer is laid over a noisy plane.
+  /// Whether points crowd in the band. Beside it count the points over the same patch that no plane
+  /// owns or one that is nearly parallel, so that no second layer is laid over a noisy plane.
   bool stands_out(const Candidate& candidate) const {
     const std::vector<Eigen::Vector3d> patch = select(shown_.points, candidate.inliers).positions;
     const double link = link_of(patch, context_.scale);
@@ -261,9 +263,9 @@ class PlaneFinder {
       const double bands = std::abs(distance) / (shown_.points.band[i] * context_.scale.eps_d);
       if (bands > 3.0 || bands < 1.0) continue;
       const Eigen::Vector3d foot = shown_.points.positions[i] - distance * candidate.plane.normal;
-      const bool over_patch = std::any_of(patch.begin(), patch.end(), [&](const Eigen::Vector3d& p) {
-        return (p - foot).squaredNorm() < link * link;
-      });
+      const bool over_patch = std::any_of(
+          patch.begin(), patch.end(),
+          [&](const Eigen::Vector3d& p) { return (p - foot).squaredNorm() < link * link; });
       beside += over_patch;
     }
     // The space beside is twice as thick as the band.
@@ -298,8 +300,7 @@ class PlaneFinder {
         ++plane.inliers;
       }
     }
-    plane.weak =
-        static_cast<int>(candidate.inliers.size()) < context_.options.strong_inliers;
+    plane.weak = static_cast<int>(candidate.inliers.size()) < context_.options.strong_inliers;
     map_.planes.put(std::move(plane));
   }
 
@@ -314,8 +315,7 @@ class PlaneFinder {
 
 }  // namespace
 
-int find_planes(Map& map, KeyframeId keyframe, const PlaneContext& context,
-                KeyframePoints& shown) {
+int find_planes(Map& map, KeyframeId keyframe, const PlaneContext& context, KeyframePoints& shown) {
   if (shown.size() < context.options.min_inliers) return 0;
   PlaneFinder finder(map, keyframe, context, shown);
   return shown.has_masks ? finder.find_in_masks() : finder.find_without_masks();

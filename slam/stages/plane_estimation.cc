@@ -98,8 +98,8 @@ std::vector<char> seen_planes(const Map& map, KeyframeId keyframe) {
   }
   std::vector<char> seen(count.size(), 0);
   for (const Plane& plane : map.planes) {
-    const bool by_depth = !plane.depth_anchors.empty() &&
-                          plane.depth_anchors.back().keyframe == keyframe;
+    const bool by_depth =
+        !plane.depth_anchors.empty() && plane.depth_anchors.back().keyframe == keyframe;
     seen[plane.id] = count[plane.id] >= kSeenLandmarks || by_depth;
   }
   return seen;

@@ -8,7 +8,8 @@ namespace planecast::slam {
 
 namespace {
 
-/// A mask instance is a plane's if the plane owns this share of the instance's owned landmarks, and so many.
+/// A mask instance is a plane's if the plane owns this share of the instance's owned landmarks, and
+/// so many.
 constexpr double kMaskShare = 0.5;
 constexpr int kMinMaskVotes = 3;
 /// Support within linking distance that a point needs to join.

@@ -28,7 +28,8 @@ Eigen::Vector3d centroid_of(const PlanePoints& points) {
 }
 
 std::vector<Eigen::Vector3d> thinned(const std::vector<Eigen::Vector3d>& points) {
-  const std::size_t step = std::max<std::size_t>(1, (points.size() + kMostCompared - 1) / kMostCompared);
+  const std::size_t step =
+      std::max<std::size_t>(1, (points.size() + kMostCompared - 1) / kMostCompared);
   std::vector<Eigen::Vector3d> result;
   for (std::size_t i = 0; i < points.size(); i += step) result.push_back(points[i]);
   return result;
@@ -87,7 +88,8 @@ void unite(std::vector<T>& into, const std::vector<T>& from) {
   into.erase(std::unique(into.begin(), into.end()), into.end());
 }
 
-/// `into` takes over everything of `from`, which is erased. Its frame moves only as a refit moves it.
+/// `into` takes over everything of `from`, which is erased. Its frame moves only as a refit moves
+/// it.
 void take_over(Map& map, PlaneId into, PlaneId from, PlaneSupport& support_into,
                PlaneSupport& support_from, const PlaneContext& context) {
   for (const LandmarkId id : support_from.landmarks) map.landmarks.at(id).plane = into;
@@ -117,7 +119,8 @@ int merge_planes(Map& map, const PlaneContext& context) {
   for (PlaneId a = 0; a < map.planes.next_id(); ++a) {
     for (PlaneId b = a + 1; b < map.planes.next_id(); ++b) {
       if (!map.planes.contains(a) || !map.planes.contains(b)) continue;
-      if (!same_plane(map.planes.at(a), map.planes.at(b), support[a], support[b], context)) continue;
+      if (!same_plane(map.planes.at(a), map.planes.at(b), support[a], support[b], context))
+        continue;
       take_over(map, a, b, support[a], support[b], context);
       ++merged;
       b = a;  // what the merged plane now touches may have been passed

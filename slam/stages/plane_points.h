@@ -18,20 +18,20 @@ struct PlaneContext {
   bool rgbd = false;
 };
 
-/// A point's inlier band, as a multiple of eps_d: in RGB-D max(eps_d, 3 sigma_z(z)) at depth z_m in metres,
-/// bounded to 2.5 eps_d, beyond which depth is too vague to tell planes; mono: 1.
+/// A point's inlier band, as a multiple of eps_d: in RGB-D max(eps_d, 3 sigma_z(z)) at depth z_m in
+/// metres, bounded to 2.5 eps_d, beyond which depth is too vague to tell planes; mono: 1.
 double band_of(const PlaneContext& context, double z_m);
 
-/// What one keyframe shows that planes can be made of: its landmarks and, in RGB-D, samples of its depth on
-/// a coarse grid. All vectors are parallel.
+/// What one keyframe shows that planes can be made of: its landmarks and, in RGB-D, samples of its
+/// depth on a coarse grid. All vectors are parallel.
 struct KeyframePoints {
   PlanePoints points;
-  std::vector<LandmarkId> landmark;         ///< kNone: a depth sample
-  std::vector<PlaneId> plane;               ///< that owns the landmark, or has taken the sample
-  std::vector<int> label;                   ///< mask instance, 0 = none
-  std::vector<Eigen::Vector3d> pixel;       ///< undistorted, third coordinate 0
-  std::vector<Eigen::Vector3f> point_cam;   ///< of depth samples
-  bool has_masks = false;                   ///< somebody segmented this image
+  std::vector<LandmarkId> landmark;        ///< kNone: a depth sample
+  std::vector<PlaneId> plane;              ///< that owns the landmark, or has taken the sample
+  std::vector<int> label;                  ///< mask instance, 0 = none
+  std::vector<Eigen::Vector3d> pixel;      ///< undistorted, third coordinate 0
+  std::vector<Eigen::Vector3f> point_cam;  ///< of depth samples
+  bool has_masks = false;                  ///< somebody segmented this image
 
   int size() const { return points.size(); }
 };
@@ -51,15 +51,15 @@ void update_figures(Plane& plane, const PlaneSupport& support, const PlaneContex
 /// Adds a depth sample to the plane.
 void add_depth_point(Plane& plane, KeyframeId keyframe, const Eigen::Vector3d& position,
                      const Eigen::Vector3f& point_cam);
-/// Thins depth points to at most `most`, evenly over the plane: one per cell of a grid that is made coarser
-/// until they fit; the latest stay.
+/// Thins depth points to at most `most`, evenly over the plane: one per cell of a grid that is made
+/// coarser until they fit; the latest stay.
 void bound_depth_points(Plane& plane, int most, double cell);
 
 /// Disowns the plane's landmarks and erases it.
 void erase_plane(Map& map, PlaneId plane);
 
-/// Distance within which points of a plane count as connected, from its support's spacing, between 2 and 6
-/// eps_d.
+/// Distance within which points of a plane count as connected, from its support's spacing, between
+/// 2 and 6 eps_d.
 double link_of(const std::vector<Eigen::Vector3d>& support, const PlaneScale& scale);
 
 }  // namespace planecast::slam

@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kChi2Pixel = 5.991;  ///< 95 %, 2 degrees of freedom
 constexpr double kChi2Depth = 7.815;  ///< 95 %, 3 degrees of freedom
-/// Share of a plane's landmarks in the keyframe beyond which it is the plane that is wrong, and how many
-/// landmarks it takes to say so.
+/// Share of a plane's landmarks in the keyframe beyond which it is the plane that is wrong, and how
+/// many landmarks it takes to say so.
 constexpr double kPlaneAtFault = 0.4;
 constexpr int kMinForFault = 10;
 
@@ -19,7 +19,8 @@ struct Member {
   double band;
 };
 
-/// The keyframe's landmarks by the plane that they own; landmarks of planes that are gone are let go.
+/// The keyframe's landmarks by the plane that they own; landmarks of planes that are gone are let
+/// go.
 std::vector<std::vector<Member>> members_in(Map& map, KeyframeId id, const PlaneContext& context) {
   std::vector<std::vector<Member>> result(static_cast<std::size_t>(map.planes.next_id()));
   const Keyframe& keyframe = map.keyframes.at(id);
