@@ -1,6 +1,8 @@
 #include "engine/scene/hit_test.h"
 
 #include <cstdio>
+#include <cstdlib>
+#include <set>
 
 #include "engine/scene/plane_outline.h"
 #include "engine/user_error.h"
@@ -26,20 +28,21 @@ std::string describe_pixel(int frame, const Eigen::Vector2d& pixel) {
   return text;
 }
 
-/// The planes of which a corner lies in the picture.
+/// The planes that a grid of rays through the picture meets.
 std::vector<PlaneRecord> planes_in_view(const Reconstruction& reconstruction,
                                         const slam::Pose& world_from_cam) {
+  constexpr int kRays = 16;  // a side
+  const slam::Camera& camera = reconstruction.camera;
+  std::set<int> ids;
+  for (int i = 0; i < kRays * kRays; ++i) {
+    const Eigen::Vector2d pixel((i % kRays + 0.5) * camera.width / kRays,
+                                (i / kRays + 0.5) * camera.height / kRays);
+    const auto hit = hit_test(reconstruction.planes, pixel_ray(camera, world_from_cam, pixel), {0.0});
+    if (hit) ids.insert(hit->plane_id);
+  }
   std::vector<PlaneRecord> seen;
-  const slam::Pose cam_from_world = world_from_cam.inverse();
   for (const PlaneRecord& plane : reconstruction.planes) {
-    for (const Eigen::Vector3d& corner : plane.polygon) {
-      const Eigen::Vector3d point = cam_from_world * corner;
-      if (point.z() <= 0.0 || !reconstruction.camera.contains(reconstruction.camera.project(point))) {
-        continue;
-      }
-      seen.push_back(plane);
-      break;
-    }
+    if (ids.count(plane.id) != 0) seen.push_back(plane);
   }
   return seen;
 }
