@@ -26,11 +26,15 @@ struct Sun {
   glm::vec3 direction_to_light = {0.3F, -0.9F, 0.2F};  ///< unit, world
   glm::vec3 radiance = glm::vec3(2.0F);  ///< linear RGB irradiance on a facing surface / pi
   bool casts_shadow = true;
-  float softness = 1.0F;  ///< radius of the shadow's filter in shadow-map texels
+  float softness = 1.0F;  ///< radius of the shadow's filter in shadow-map texels, at least
+  /// Half the angle the light is wide: shadows on catchers blur with the distance of what casts them.
+  /// The sun's is 0.0046; lamps and windows are wider.
+  float angular_radius_rad = 0.05F;
 };
 
 /// Light of a scene: diffuse surroundings as spherical harmonics of order 2 (9 coefficients, linear
-/// RGB radiance, real SH basis) and one main direction.
+/// RGB radiance, real SH basis without the Condon-Shortley sign: 1, y, z, x, xy, yz, 3z^2-1, xz,
+/// x^2-y^2 of the world direction) and one main direction.
 struct Light {
   std::array<glm::vec3, 9>
       ambient_sh{};  ///< [0] alone: uniform surroundings of radiance c / 3.5449
@@ -78,7 +82,9 @@ struct Layer {
   } bounds;  ///< outside it all is transparent
 };
 
-/// A surface of an opaque scene such as the synthetic generator's: own triangles, one material.
+/// A surface of an opaque scene such as the synthetic generator's: own triangles, one material. Lit by
+/// its normals from either side; casts a shadow only where its normal faces the sun, so that the walls
+/// of a closed room let the sun in.
 struct SurfaceMesh {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;

@@ -1,37 +1,27 @@
 #include "slam/system.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "slam/stages/stopwatch.h"
 
 namespace planecast::slam {
 namespace {
 
-class Stopwatch {
- public:
-  double lap_ms() {
-    const auto now = std::chrono::steady_clock::now();
-    const double ms = std::chrono::duration<double, std::milli>(now - last_).count();
-    last_ = now;
-    return ms;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
-
-/// One set of pyramid levels for every stage.
-SystemOptions with_common_levels(SystemOptions options) {
+/// One set of pyramid levels and one seed for every stage.
+SystemOptions with_common_values(SystemOptions options) {
   const ScaleLevels levels = options.orb.levels;
   options.initialise.levels = levels;
   options.initialise.seed = options.seed;
   options.track.localise.levels = levels;
   options.track.relocalise.localise.levels = levels;
   options.track.relocalise.seed = options.seed;
-  options.points.levels = levels;
-  options.bundle.levels = levels;
-  options.planes.seed = options.seed;
+  options.mapping.rgbd = options.rgbd;
+  options.mapping.points.levels = levels;
+  options.mapping.bundle.levels = levels;
+  options.mapping.planes.seed = options.seed;
   return options;
 }
 
@@ -62,27 +52,20 @@ PoseEstimate estimate_of_keyframe(const Keyframe& keyframe) {
   return estimate;
 }
 
-void append_plane_times(const PlaneMappingStats& stats, StageTimes& times) {
-  times.emplace_back("Non-Planar Map Point Culling", stats.cull_ms);
-  times.emplace_back("New Plane Detection", stats.new_ms);
-  times.emplace_back("Plane Merging/Expanding", stats.merge_expand_ms);
-  times.emplace_back("Plane Re-estimation", stats.reestimate_ms);
-  times.emplace_back("Point-Plane Refinement", stats.refine_ms);
-}
-
 }  // namespace
 
 System::System(const SystemOptions& options, const Camera& camera,
                std::unique_ptr<PlaneSegmenter> segmenter)
-    : options_(with_common_levels(options)),
+    : options_(with_common_values(options)),
       camera_(camera),
-      segmenter_(std::move(segmenter)),
       extractor_(std::make_unique<OrbExtractor>(options_.orb)),
       initialiser_(options_.initialise, camera),
       tracker_(options_.track, camera, options_.rgbd),
-      plane_mapper_(options_.planes, camera, options_.rgbd) {}
+      mapper_(options_.mapping, camera, std::move(segmenter)) {}
 
-System::~System() = default;
+System::~System() {
+  for (const InFlight& flight : in_flight_) flight.result.wait();
+}
 
 ImageFeatures System::prepare(const FrameInput& frame, bool initialised) const {
   ImageFeatures image;
@@ -104,153 +87,103 @@ ImageFeatures System::prepare(const FrameInput& frame, bool initialised) const {
   return image;
 }
 
-cv::Mat System::segment(const ImageFeatures& image, StageTimes& times) const {
-  Stopwatch watch;
-  FrameInput frame;
-  frame.index = image.frame_index;
-  frame.timestamp = image.timestamp;
-  frame.image = image.grey_or_bgr;
-  frame.depth = image.depth;
-  frame.labels = image.labels;
-  cv::Mat labels = segmenter_->segment(frame);
-  times.emplace_back("Instance Planar Segmentation", watch.lap_ms());
-  return labels;
-}
-
 void System::restart() {
-  map_ = Map();
+  StageTimes ignored;
+  while (!in_flight_.empty()) take_over_due(in_flight_.back().visible_at, ignored);
+  working_map_ = Map();
+  visible_map_ = std::make_shared<const Map>();
   initialiser_.reset();
   tracker_ = Tracker(options_.track, camera_, options_.rgbd);
-  plane_mapper_ = PlaneMapper(options_.planes, camera_, options_.rgbd);
+  mapper_.reset();
+  next_job_ = {};
   lost_frames_ = 0;
 }
 
-void System::start_mono(const ImageFeatures& image, FrameTrack& result) {
+void System::start(const ImageFeatures& image, FrameTrack& result) {
   Stopwatch watch;
-  const InitialiseResult started = initialiser_.try_image(image, map_);
-  result.times.emplace_back("System (Mono) Initialization", watch.lap_ms());
+  const std::optional<ImageFeatures> reference = initialiser_.reference();
+  const InitialiseResult started =
+      options_.rgbd ? initialise_rgbd(image, camera_, options_.orb.levels,
+                                      options_.initialise.min_landmarks, working_map_)
+                    : initialiser_.try_image(image, working_map_);
+  if (!options_.rgbd) result.times.emplace_back("System (Mono) Initialization", watch.lap_ms());
   if (!started.done) {
     result.reason = started.reason;
     return;
   }
-  if (options_.map_planes) {
-    ImageFeatures reference = *initialiser_.reference();
-    for (const KeyframeId id : {0, 1}) {
-      ImageFeatures& source = id == 0 ? reference : const_cast<ImageFeatures&>(image);
-      Keyframe& keyframe = map_.keyframes.at(id);
-      keyframe.label_image = segment(source, result.mapping_times);
-      if (keyframe.label_image.empty()) continue;
-      for (std::size_t k = 0; k < keyframe.labels.size(); ++k) {
-        keyframe.labels[k] =
-            label_at(keyframe.label_image, keyframe.features->keypoints[k].raw);
-      }
-    }
-    watch.lap_ms();
-    PlaneMappingStats stats;
-    map_planes_after(0, stats);
-    map_planes_after(1, stats);
-    result.mapping_times.emplace_back("Point-Plane Map Initialization", watch.lap_ms());
-  }
-  tracker_.start(image, estimate_of_keyframe(map_.keyframes.at(1)), 1);
+  std::vector<ImageFeatures> images;
+  if (reference && !options_.rgbd) images.push_back(*reference);
+  images.push_back(image);
+  const KeyframeReport report = mapper_.start(working_map_, images);
+  result.mapping_times = report.times;
+  visible_map_ = std::make_shared<const Map>(working_map_);
+  const KeyframeId newest = map().keyframes.next_id() - 1;
+  tracker_.start(image, estimate_of_keyframe(map().keyframes.at(newest)), newest);
   result.state = TrackState::kTracked;
   result.keyframe = true;
-  result.reference = 1;
-  result.cam_from_world = map_.keyframes.at(1).cam_from_world;
-  result.inliers = static_cast<int>(map_.landmarks.size());
+  result.reference = newest;
+  result.cam_from_world = map().keyframes.at(newest).cam_from_world;
+  result.inliers = static_cast<int>(map().landmarks.size());
 }
 
-void System::start_rgbd(const ImageFeatures& image, FrameTrack& result) {
-  ImageFeatures segmented = image;
-  if (options_.map_planes) segmented.labels = segment(image, result.mapping_times);
-  const InitialiseResult started = initialise_rgbd(segmented, camera_, options_.orb.levels,
-                                                   options_.initialise.min_landmarks, map_);
-  if (!started.done) {
-    result.reason = started.reason;
-    return;
+void System::hand_over(const ImageFeatures& image, const TrackResult& tracked,
+                       FrameTrack& result) {
+  KeyframeJob job = std::exchange(next_job_, {});
+  job.image = image;
+  job.matches = tracked.estimate.matches;
+  job.reference = tracked.reference;
+  job.cam_from_reference = result.cam_from_reference;
+  const std::shared_future<Mapped> earlier =
+      in_flight_.empty() ? std::shared_future<Mapped>() : in_flight_.back().result;
+  InFlight flight;
+  flight.visible_at = image.frame_index + options_.mapping_delay;
+  if (!in_flight_.empty()) {
+    flight.visible_at = std::max(flight.visible_at, in_flight_.back().visible_at + 1);
   }
-  if (options_.map_planes) {
-    Stopwatch watch;
-    PlaneMappingStats stats;
-    map_planes_after(0, stats);
-    result.mapping_times.emplace_back("Point-Plane Map Initialization", watch.lap_ms());
-  }
-  tracker_.start(image, estimate_of_keyframe(map_.keyframes.at(0)), 0);
-  result.state = TrackState::kTracked;
+  flight.result =
+      std::async(options_.threads > 1 ? std::launch::async : std::launch::deferred,
+                 [this, earlier, job = std::move(job)] {
+                   if (earlier.valid()) earlier.wait();
+                   Mapped mapped;
+                   mapped.report = mapper_.insert(working_map_, job);
+                   mapped.map = std::make_shared<const Map>(working_map_);
+                   return mapped;
+                 })
+          .share();
+  in_flight_.push_back(std::move(flight));
+  tracker_.keyframe_requested(image.frame_index);
   result.keyframe = true;
-  result.reference = 0;
-  result.cam_from_world = Pose::Identity();
-  result.inliers = static_cast<int>(map_.landmarks.size());
 }
 
-void System::map_planes_after(KeyframeId keyframe, PlaneMappingStats& stats) {
-  plane_mapper_.cull_non_planar(map_, keyframe, stats);
-  plane_mapper_.update(map_, keyframe, stats);
+void System::take_over(InFlight flight, StageTimes& times) {
+  const Mapped& mapped = flight.result.get();
+  times.insert(times.end(), mapped.report.times.begin(), mapped.report.times.end());
+  visible_map_ = mapped.map;
+  tracker_.follow_map(map());
 }
 
-void System::count_visible(const TrackResult& result) {
-  for (const LandmarkId id : result.estimate.visible) {
-    if (Landmark* landmark = map_.landmarks.find(id)) ++landmark->visible;
+void System::take_over_due(int frame_index, StageTimes& times) {
+  while (!in_flight_.empty() && in_flight_.front().visible_at <= frame_index) {
+    InFlight flight = std::move(in_flight_.front());
+    in_flight_.pop_front();
+    take_over(std::move(flight), times);
   }
-  for (const LandmarkId id : result.estimate.matches) {
-    if (Landmark* landmark = map_.landmarks.find(id)) ++landmark->found;
-  }
-}
-
-void System::insert_keyframe(const ImageFeatures& image, const PoseEstimate& estimate,
-                             FrameTrack& result) {
-  Stopwatch total;
-  StageTimes& times = result.mapping_times;
-  ImageFeatures segmented = image;
-  segmented.labels = options_.map_planes ? segment(image, times) : cv::Mat();
-  Stopwatch watch;
-  Keyframe keyframe = make_keyframe(segmented, estimate.cam_from_world, map_);
-  const KeyframeId id = keyframe.id;
-  keyframe.parent = result.reference;
-  map_.keyframes.put(std::move(keyframe));
-  for (std::size_t k = 0; k < estimate.matches.size(); ++k) {
-    if (estimate.matches[k] == kNone) continue;
-    map_.add_observation(estimate.matches[k], id, static_cast<int>(k));
-    map_.update_landmark_summary(estimate.matches[k], options_.orb.levels);
-  }
-  PointMappingStats points;
-  PlaneMappingStats planes;
-  cull_landmarks(map_, id, options_.rgbd, options_.points, points);
-  if (options_.map_planes) plane_mapper_.cull_non_planar(map_, id, planes);
-  watch.lap_ms();
-  create_landmarks(map_, id, camera_, options_.rgbd, image.grey_or_bgr, options_.points, points);
-  times.emplace_back("Triangulation", watch.lap_ms());
-  fuse_landmarks(map_, id, camera_, options_.rgbd, options_.points, points);
-  times.emplace_back("Fusing", watch.lap_ms());
-  if (options_.map_planes) plane_mapper_.update(map_, id, planes);
-  watch.lap_ms();
-  local_bundle(map_, camera_, id, options_.bundle);
-  times.emplace_back("Local BA", watch.lap_ms());
-  if (options_.map_planes) {
-    plane_mapper_.follow_map(map_);
-    append_plane_times(planes, times);
-  }
-  cull_keyframes(map_, id, options_.points, points);
-  times.emplace_back("Local Mapping", total.lap_ms());
-  tracker_.keyframe_inserted(id, image.frame_index, map_);
-  tracker_.follow_map(map_);
-  result.keyframe = true;
-  result.reference = id;
-  result.cam_from_reference = Pose::Identity();
 }
 
 FrameTrack System::track(const ImageFeatures& image) {
   FrameTrack result;
+  take_over_due(image.frame_index, result.mapping_times);
   if (lost_frames_ >= options_.restart_after_lost &&
-      static_cast<int>(map_.keyframes.size()) < options_.restart_keyframes) {
+      static_cast<int>(map().keyframes.size()) < options_.restart_keyframes) {
     restart();
     result.restarted = true;
   }
   if (!initialised()) {
-    options_.rgbd ? start_rgbd(image, result) : start_mono(image, result);
+    start(image, result);
     return result;
   }
   Stopwatch watch;
-  const TrackResult tracked = tracker_.track(image, map_);
+  const TrackResult tracked = tracker_.track(image, map());
   result.times.emplace_back("Tracking", watch.lap_ms());
   if (!tracked.tracked) {
     ++lost_frames_;
@@ -259,35 +192,45 @@ FrameTrack System::track(const ImageFeatures& image) {
     return result;
   }
   lost_frames_ = 0;
-  count_visible(tracked);
+  const PoseEstimate& estimate = tracked.estimate;
+  next_job_.visible.insert(next_job_.visible.end(), estimate.visible.begin(),
+                           estimate.visible.end());
+  for (const LandmarkId id : estimate.matches) {
+    if (id != kNone) next_job_.found.push_back(id);
+  }
   result.state = TrackState::kTracked;
-  result.inliers = tracked.estimate.inliers;
-  result.cam_from_world = tracked.estimate.cam_from_world;
+  result.inliers = estimate.inliers;
+  result.cam_from_world = estimate.cam_from_world;
   result.reference = tracked.reference;
   result.cam_from_reference =
-      tracked.estimate.cam_from_world * map_.keyframe_pose(tracked.reference).inverse();
-  if (tracked.want_keyframe) insert_keyframe(image, tracked.estimate, result);
+      estimate.cam_from_world * map().keyframe_pose(tracked.reference).inverse();
+  if (tracked.want_keyframe) hand_over(image, tracked, result);
   return result;
 }
 
 FinishResult System::finish() {
   FinishResult result;
-  if (map_.keyframes.size() < 2) return result;
-  BundleOptions bundle = options_.bundle;
+  while (!in_flight_.empty()) {
+    take_over_due(in_flight_.back().visible_at, result.mapping_times);
+  }
+  if (working_map_.keyframes.size() < 2) return result;
+  BundleOptions bundle = options_.mapping.bundle;
   bundle.iterations = 20;
   bundle.refine_focal = camera_.guessed;
-  result.global = global_bundle(map_, camera_, bundle);
-  if (!options_.map_planes) return result;
-  plane_mapper_.follow_map(map_);
-  if (options_.refine_jointly && !map_.planes.empty()) {
-    JointOptions joint;
-    joint.bundle = bundle;
-    joint.plane_sigma = plane_mapper_.scale().eps_pi;
-    result.joint = refine_jointly(map_, camera_, joint);
+  result.global = global_bundle(working_map_, camera_, bundle);
+  if (options_.mapping.map_planes) {
+    mapper_.follow_map(working_map_);
+    if (options_.refine_jointly && !working_map_.planes.empty()) {
+      JointOptions joint;
+      joint.bundle = bundle;
+      joint.plane_sigma = mapper_.plane_scale().eps_pi;
+      result.joint = refine_jointly(working_map_, camera_, joint);
+    }
   }
-  for (const Landmark& landmark : map_.landmarks) {
-    map_.update_landmark_summary(landmark.id, options_.orb.levels);
+  for (const Landmark& landmark : working_map_.landmarks) {
+    working_map_.update_landmark_summary(landmark.id, options_.orb.levels);
   }
+  visible_map_ = std::make_shared<const Map>(working_map_);
   return result;
 }
 
@@ -300,15 +243,15 @@ std::optional<PoseEstimate> System::localise(
     prior.cam_from_world = *prior_cam_from_world;
     prior.matches.assign(image.features->keypoints.size(), kNone);
     std::vector<KeyframeId> everywhere;
-    for (const Keyframe& keyframe : map_.keyframes) everywhere.push_back(keyframe.id);
+    for (const Keyframe& keyframe : map().keyframes) everywhere.push_back(keyframe.id);
     PoseEstimate estimate =
-        search_local_map(map_, camera_, *image.features, prior, everywhere, 2.0, options);
+        search_local_map(map(), camera_, *image.features, prior, everywhere, 2.0, options);
     if (estimate.inliers >= options_.track.min_inliers) {
-      estimate = search_local_map(map_, camera_, *image.features, estimate, everywhere, 1.0, options);
+      estimate = search_local_map(map(), camera_, *image.features, estimate, everywhere, 1.0, options);
       if (estimate.inliers >= options_.track.min_inliers) return estimate;
     }
   }
-  return relocalise(map_, camera_, *image.features, options_.track.relocalise);
+  return relocalise(map(), camera_, *image.features, options_.track.relocalise);
 }
 
 }  // namespace planecast::slam

@@ -2,7 +2,7 @@
 uniform sampler2DShadow u_shadow_map;
 uniform sampler2D u_shadow_depth;
 uniform mat4 u_shadow_from_world;
-uniform vec2 u_shadow_extent_m;
+uniform float u_shadow_extent_m;
 uniform float u_shadow_depth_m;
 uniform float u_shadow_texel_m;
 uniform float u_shadow_radius_m;
@@ -20,7 +20,7 @@ float sun_visibility(vec3 world, vec3 normal, float n_dot_l) {
   float slope = sqrt(max(0.0, 1.0 - n_dot_l * n_dot_l));
   vec3 at = shadow_coordinates(world + normal * reach * (0.3 + slope));
   at.z -= 0.5 * u_shadow_texel_m / u_shadow_depth_m;
-  vec2 step = u_shadow_radius_m / u_shadow_extent_m;
+  float step = u_shadow_radius_m / u_shadow_extent_m;
   float sum = 0.0;
   for (int y = -1; y <= 1; ++y) {
     for (int x = -1; x <= 1; ++x) {

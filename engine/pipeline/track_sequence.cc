@@ -46,8 +46,9 @@ slam::SystemOptions system_options(const TrackSequenceOptions& options, bool rgb
   result.rgbd = rgbd;
   result.seed = options.seed;
   result.orb.features = options.features;
+  result.threads = options.threads;
   if (options.plane_merge == "paper") {
-    result.planes.merge = slam::PlaneMerge::kPaper;
+    result.mapping.planes.merge = slam::PlaneMerge::kPaper;
   } else if (options.plane_merge != "default") {
     throw UserError("--plane-merge " + options.plane_merge + ": expected default or paper");
   }
@@ -114,8 +115,9 @@ class TwoPassTracker {
 
   Reconstruction run() {
     first_pass();
-    const slam::FinishResult finished = system_.finish();
-    (void)finished;
+    for (const auto& [stage, ms] : system_.finish().mapping_times) {
+      mapping_times_[stage].push_back(ms);
+    }
     take_over_references();
     if (!options_.causal) second_pass();
     return records();

@@ -1,26 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <glm/glm.hpp>
 #include <span>
 
 #include "render/gl/objects.h"
+#include "render/vertex.h"
 
 namespace planecast::render {
-
-/// What deformation changes.
-struct ShapeVertex {
-  glm::vec3 position{};
-  glm::vec3 normal{};
-  glm::vec4 tangent{};  ///< w = handedness of the bitangent
-};
-
-/// What stays.
-struct SurfaceVertex {
-  glm::vec2 uv0{};
-  glm::vec2 uv1{};
-  glm::vec4 color = glm::vec4(1.0F);
-};
 
 /// One indexed triangle list on the GPU. Attribute locations: 0 position, 1 normal, 2 tangent, 3
 /// uv0, 4 uv1, 5 colour.

@@ -55,8 +55,7 @@ ShadowProjection fit_shadow(const glm::vec3& direction_to_light, std::span<const
   const glm::vec3 center = 0.5F * (low + high);
   glm::vec3 half = glm::max(0.5F * (high - low), glm::vec3(smallest));
   const float grow = 1.0F / (1.0F - 2.0F * margin_texels / static_cast<float>(size));
-  half.x *= grow;
-  half.y *= grow;
+  half.x = half.y = std::max(half.x, half.y) * grow;
   half.z = half.z * 1.01F;
 
   glm::mat4 clip(0.0F);
@@ -68,8 +67,8 @@ ShadowProjection fit_shadow(const glm::vec3& direction_to_light, std::span<const
       glm::vec4(-center.x / half.x, -center.y / half.y, 0.5F - center.z / (2.0F * half.z), 1.0F);
   ShadowProjection projection;
   projection.clip_from_world = clip;
-  projection.extent_m = 2.0F * glm::vec2(half);
-  projection.texel_m = 2.0F * std::max(half.x, half.y) / static_cast<float>(size);
+  projection.extent_m = 2.0F * half.x;
+  projection.texel_m = projection.extent_m / static_cast<float>(size);
   projection.depth_m = 2.0F * half.z;
   return projection;
 }

@@ -12,8 +12,8 @@ namespace planecast::render {
 /// Parallel projection along the sun, fitted to what casts shadows.
 struct ShadowProjection {
   glm::mat4 clip_from_world = glm::mat4(1.0F);  ///< depth 0 nearest to the sun .. 1
-  float texel_m = 0.0F;                         ///< larger side of a texel on a facing plane
-  glm::vec2 extent_m{};                         ///< width and height of the map
+  float texel_m = 0.0F;                         ///< side of a texel on a facing plane
+  float extent_m = 0.0F;                        ///< side of the map
   float depth_m = 0.0F;                         ///< its depth range
 };
 
@@ -33,6 +33,7 @@ class ShadowMap {
   /// Binds the two samplers and sets what shadow.glsl reads. `enabled` false: all is lit.
   void bind(const Program& program, const Sun& sun, bool enabled) const;
   const ShadowProjection& projection() const { return projection_; }
+  GLuint depth_texture() const { return depth_.id(); }
   int size() const { return size_; }
 
  private:

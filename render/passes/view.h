@@ -6,13 +6,9 @@
 
 #include "render/gl/functions.h"
 #include "render/scene.h"
+#include "render/vertex.h"
 
 namespace planecast::render {
-
-struct Box {
-  glm::vec3 min{};
-  glm::vec3 max{};
-};
 
 /// Projection for row 0 of the framebuffer = top row of the picture, pixel centres at integers:
 ///   u = fx x/z + cx  lands at window x = u + 0.5, v likewise.

@@ -70,6 +70,14 @@ Pose Map::keyframe_pose(KeyframeId keyframe) const {
   return Pose::Identity();
 }
 
+KeyframeId Map::living_ancestor(KeyframeId keyframe) const {
+  if (keyframe == kNone || keyframes.contains(keyframe)) return keyframe;
+  for (const ErasedKeyframe& erased : erased_keyframes_) {
+    if (erased.id == keyframe) return living_ancestor(erased.parent);
+  }
+  return kNone;
+}
+
 void Map::replace_landmark(LandmarkId from, LandmarkId to) {
   if (from == to || !landmarks.contains(from) || !landmarks.contains(to)) return;
   const Landmark old = landmarks.at(from);

@@ -35,6 +35,8 @@ class Map {
 
   /// cam_from_world of a living keyframe, or of an erased one by way of its ancestors.
   Pose keyframe_pose(KeyframeId keyframe) const;
+  /// The keyframe itself, or the nearest ancestor that was not erased.
+  KeyframeId living_ancestor(KeyframeId keyframe) const;
 
   /// Keyframes that share at least `min_shared` landmarks with `keyframe`, most first, ties by id.
   std::vector<std::pair<KeyframeId, int>> covisible(KeyframeId keyframe, int min_shared = 15) const;

@@ -26,7 +26,7 @@ struct RansacOptions {
   int max_stagnant_rounds = 3;  ///< [D] outer rounds without a better model end the search
   int subsets_per_cut = 4;  ///< [D] random subsets tried per labelling; a cut costs as much as many
   int max_cuts = 4;         ///< per local optimisation
-  int final_rounds = 2;     ///< least squares and new inliers, alternating
+  int final_rounds = 6;     ///< least squares and new inliers, alternating
   int min_inliers = 12;
   double min_inlier_ratio = 0.0;
   bool graph_cut = true;  ///< false: plain RANSAC, no local optimisation, for the ablation

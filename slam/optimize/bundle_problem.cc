@@ -156,15 +156,15 @@ int solve_bundle(BundleProblem& problem, const BundleSolve& solve) {
       solver_options(solve.iterations, static_cast<int>(free_keyframes));
   ceres::ParameterBlockOrdering& ordering = *options.linear_solver_ordering;
   for (std::size_t i = 0; i < problem.points.size(); ++i) {
-    if (point_used[i]) ordering.AddElementToGroup(problem.points[i].data(), 0);
+    if (point_used[i]) ordering.AddElementToGroup(problem.points[i].data(), kPointGroup);
   }
   for (std::size_t i = 0; i < problem.poses.size(); ++i) {
     if (!pose_used[i]) continue;
-    ordering.AddElementToGroup(problem.poses[i].data(), 1);
+    ordering.AddElementToGroup(problem.poses[i].data(), kPoseGroup);
     ceres_problem.SetManifold(problem.poses[i].data(), &manifold);
     if (problem.fixed[i]) ceres_problem.SetParameterBlockConstant(problem.poses[i].data());
   }
-  if (solve.refine_focal) ordering.AddElementToGroup(&problem.focal_factor, 1);
+  if (solve.refine_focal) ordering.AddElementToGroup(&problem.focal_factor, kFocalGroup);
   if (solve.extend) solve.extend(ceres_problem, ordering);
   ceres::Solver::Summary summary;
   ceres::Solve(options, &ceres_problem, &summary);

@@ -52,12 +52,15 @@ BundleProblem collect_bundle(const Map& map, const Camera& camera,
 /// keyframe.
 BundleProblem collect_whole_map(const Map& map, const Camera& camera, const BundleOptions& options);
 
+/// Elimination order. Ceres orders the blocks within a group by address, which is repeatable only
+/// for blocks in one array: every array has its own group.
+enum BundleGroup { kPointGroup, kPoseGroup, kFocalGroup, kPlaneGroup };
+
 struct BundleSolve {
   int iterations = 10;
   bool robust = true;  ///< Huber
   bool refine_focal = false;
-  /// Adds further residuals and parameter blocks (to group 1 of the ordering); what they are made
-  /// of must outlive the call.
+  /// Adds further residuals and parameter blocks; what they are made of must outlive the call.
   std::function<void(ceres::Problem&, ceres::ParameterBlockOrdering&)> extend;
 };
 
@@ -78,8 +81,9 @@ double reprojection_rms_px(const BundleProblem& problem);
 double restore_distance(BundleProblem& problem, int anchor, int other, double distance);
 double keyframe_distance(const BundleProblem& problem, int anchor, int other);
 
-/// Writes poses and positions back and takes the inactive observations out of the map; returns how
-/// many.
-int apply_bundle(const BundleProblem& problem, Map& map);
+/// Writes poses and positions back.
+void write_back(const BundleProblem& problem, Map& map);
+/// Takes the inactive observations out of the map; returns how many.
+int remove_inactive(const BundleProblem& problem, Map& map);
 
 }  // namespace planecast::slam

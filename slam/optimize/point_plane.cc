@@ -1,7 +1,6 @@
 #include <ceres/loss_function.h>
 #include <ceres/sphere_manifold.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -100,14 +99,15 @@ std::unique_ptr<CentreDistanceCost> scale_cost(const BundleProblem& bundle, int&
   return std::make_unique<CentreDistanceCost>(anchor, farthest, kScaleSigma * farthest);
 }
 
-void solve_jointly(BundleProblem& bundle, PlaneProblem& planes, const JointOptions& options) {
-  PointPlaneCost cost(options.plane_sigma);
+void solve_jointly(BundleProblem& bundle, PlaneProblem& planes, double plane_sigma,
+                   int iterations) {
+  PointPlaneCost cost(plane_sigma);
   ceres::CauchyLoss cauchy(1.0);
   ceres::SphereManifold<3> sphere;
   int scale_keyframe = kNone;
   const std::unique_ptr<CentreDistanceCost> scale = scale_cost(bundle, scale_keyframe);
   BundleSolve solve;
-  solve.iterations = options.bundle.iterations;
+  solve.iterations = iterations;
   solve.extend = [&](ceres::Problem& problem, ceres::ParameterBlockOrdering& ordering) {
     std::vector<char> used(planes.planes.size(), 0);
     for (const Ownership& owned : planes.owned) {
@@ -120,8 +120,8 @@ void solve_jointly(BundleProblem& bundle, PlaneProblem& planes, const JointOptio
     for (std::size_t i = 0; i < used.size(); ++i) {
       if (!used[i]) continue;
       problem.SetManifold(planes.planes[i].normal.data(), &sphere);
-      ordering.AddElementToGroup(planes.planes[i].normal.data(), 1);
-      ordering.AddElementToGroup(&planes.planes[i].offset, 1);
+      ordering.AddElementToGroup(planes.planes[i].normal.data(), kPlaneGroup);
+      ordering.AddElementToGroup(&planes.planes[i].offset, kPlaneGroup);
     }
     if (scale == nullptr) return;
     double* pose = bundle.poses[static_cast<std::size_t>(scale_keyframe)].data();
@@ -130,30 +130,41 @@ void solve_jointly(BundleProblem& bundle, PlaneProblem& planes, const JointOptio
   solve_bundle(bundle, solve);
 }
 
-}  // namespace
-
-JointResult refine_jointly(Map& map, const Camera& camera, const JointOptions& options) {
-  JointResult result;
-  if (map.keyframes.empty()) return result;
-  BundleProblem bundle = collect_whole_map(map, camera, options.bundle);
-  PlaneProblem planes = collect_planes(map, bundle);
-  deactivate_outliers(bundle, std::numeric_limits<double>::infinity());
-  result.reprojection_cost_before = result.reprojection_cost_after = huber_cost(bundle);
-  result.plane_rms_before = result.plane_rms_after = plane_rms(planes, bundle);
-  if (planes.owned.empty()) return result;
-
-  solve_jointly(bundle, planes, options);
-  result.reprojection_cost_after = huber_cost(bundle);
-  result.plane_rms_after = plane_rms(planes, bundle);
-  result.kept = result.reprojection_cost_after <=
-                (1.0 + options.max_reprojection_rise) * result.reprojection_cost_before;
-  if (!result.kept) return result;
-  write_back(bundle, map);
+void write_back_planes(const PlaneProblem& planes, const BundleProblem& bundle, Map& map) {
   for (int i = 0; i < static_cast<int>(planes.planes.size()); ++i) {
     const PlaneBlock& block = planes.planes[static_cast<std::size_t>(i)];
     Plane& plane = map.planes.at(block.id);
     plane.refit(block.normal.normalized(), block.offset);
     plane.rms = plane_rms(planes, bundle, i);
+  }
+}
+
+}  // namespace
+
+JointResult refine_jointly(Map& map, const Camera& camera, const JointOptions& options) {
+  JointResult result;
+  if (map.keyframes.empty()) return result;
+  BundleProblem start = collect_whole_map(map, camera, options.bundle);
+  const PlaneProblem start_planes = collect_planes(map, start);
+  deactivate_outliers(start, std::numeric_limits<double>::infinity());
+  result.reprojection_cost_before = result.reprojection_cost_after = huber_cost(start);
+  result.plane_rms_before = result.plane_rms_after = plane_rms(start_planes, start);
+  result.plane_sigma = options.plane_sigma;
+  if (start_planes.owned.empty()) return result;
+
+  const double limit = (1.0 + options.max_reprojection_rise) * result.reprojection_cost_before;
+  for (int relaxation = 0; relaxation <= options.max_relaxations; ++relaxation) {
+    result.plane_sigma = std::ldexp(options.plane_sigma, relaxation);
+    BundleProblem bundle = start;
+    PlaneProblem planes = start_planes;
+    solve_jointly(bundle, planes, result.plane_sigma, options.bundle.iterations);
+    result.reprojection_cost_after = huber_cost(bundle);
+    result.plane_rms_after = plane_rms(planes, bundle);
+    if (!(result.reprojection_cost_after <= limit)) continue;
+    result.kept = true;
+    write_back(bundle, map);
+    write_back_planes(planes, bundle, map);
+    break;
   }
   return result;
 }

@@ -109,4 +109,19 @@ inline void perturb(Map& map, int held, double rotation, double translation, dou
   for (Landmark& landmark : map.landmarks) landmark.position += position * gaussian3(random);
 }
 
+/// How many poses and landmarks are not the same to the bit in both maps.
+inline int different_bits(const Map& a, const Map& b) {
+  int different = static_cast<int>(a.landmarks.size() != b.landmarks.size());
+  for (const Keyframe& keyframe : a.keyframes) {
+    const Keyframe* other = b.keyframes.find(keyframe.id);
+    different +=
+        other == nullptr || keyframe.cam_from_world.matrix() != other->cam_from_world.matrix();
+  }
+  for (const Landmark& landmark : a.landmarks) {
+    const Landmark* other = b.landmarks.find(landmark.id);
+    different += other == nullptr || landmark.position != other->position;
+  }
+  return different;
+}
+
 }  // namespace planecast::slam::synthetic
