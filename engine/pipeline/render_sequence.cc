@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <thread>
 
 #include "engine/assets.h"
@@ -141,12 +142,13 @@ class SequenceRenderer {
                    const RenderSequenceOptions& options, const std::filesystem::path& folder)
       : sequence_(sequence),
         reconstruction_(reconstruction),
+        scene_(scene),
         options_(options),
         folder_(folder),
         content_(load_content(reconstruction, scene, options.causal)),
         light_(scene.light ? fixed_light(*scene.light, reconstruction.up)
                            : estimate_light(sequence, reconstruction)),
-        painter_(reconstruction, content_, light_, painter_options(scene)) {
+        painter_(reconstruction, content_, light_, painter_options()) {
     for (const FrameRecord& record : reconstruction.frames) records_[record.index] = &record;
     result_.warnings = content_.warnings;
   }
@@ -154,15 +156,16 @@ class SequenceRenderer {
   RenderSequenceResult run(const Progress& progress);
 
  private:
-  PainterOptions painter_options(const SceneFile& scene) const {
+  PainterOptions painter_options() const {
     PainterOptions result;
     result.shader_dir = asset("shaders");
-    result.occlusion = scene.occlusion;
-    result.shadows = scene.shadows;
+    result.occlusion = scene_.occlusion;
+    result.shadows = scene_.shadows;
     result.seed = options_.seed;
     return result;
   }
   void open_outputs();
+  std::string content_key() const;
   int resume_frame() const;
   void write(const Picture& picture);
   cv::Mat picture_of(const Job& job);
@@ -170,6 +173,7 @@ class SequenceRenderer {
 
   Sequence& sequence_;
   const Reconstruction& reconstruction_;
+  const SceneFile& scene_;
   const RenderSequenceOptions& options_;
   std::filesystem::path folder_;
   Content content_;
@@ -188,17 +192,33 @@ void SequenceRenderer::open_outputs() {
   if (options_.video) {
     VideoOptions video_options;
     video_options.resume = options_.resume;
+    video_options.content_key = content_key();
     result_.video = folder_ / "augmented.mp4";
     video_ = std::make_unique<VideoWriter>(result_.video, reconstruction_.camera.width,
                                            reconstruction_.camera.height, sequence_.fps(), video_options);
   }
 }
 
+/// Everything but the pictures' own content that a frame depends on.
+std::string SequenceRenderer::content_key() const {
+  std::string key = scene_.name.empty() ? "default scene" : read_file(scene_.name);
+  key += "\nframes " + std::to_string(sequence_.first_frame()) + ":" + std::to_string(sequence_.end_frame());
+  key += "\nseed " + std::to_string(options_.seed) + (options_.causal ? " causal" : "") +
+         (options_.debug_overlay ? " overlay" : "");
+  for (const ContentItem& item : content_.items) {
+    const Eigen::Matrix4d pose = item.placed.anchor.plane_from_anchor.matrix();
+    std::ostringstream numbers;
+    numbers << std::hexfloat << pose.reshaped().transpose() << ' ' << item.placed.scale;
+    key += "\nplane " + std::to_string(item.placed.anchor.plane_id) + " at " + numbers.str();
+  }
+  return key;
+}
+
 /// First frame that is still to be drawn.
 int SequenceRenderer::resume_frame() const {
   const int first = sequence_.first_frame();
   if (!options_.resume || !video_) return first;
-  return std::min(first + video_->frames_complete(), sequence_.end_frame());
+  return std::min(first + video_->first_missing_frame(), sequence_.end_frame());
 }
 
 void SequenceRenderer::write(const Picture& picture) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/pipeline/map_to_records.h"
+#include "engine/scene/plane_classes.h"
 #include "engine/user_error.h"
 #include "slam/system.h"
 
@@ -268,6 +269,9 @@ Reconstruction TwoPassTracker::records() {
   for (FrameRecord& record : result.frames) {
     if (record.world_from_cam) record.reason.clear();
   }
+  UpOptions up_options;
+  up_options.known_up = options_.up;
+  classify_planes(result, up_options);
   return result;
 }
 

@@ -28,6 +28,25 @@ int find_animation(const render::Model& model, const SceneObject& object) {
                   "' (it has: " + (list.empty() ? "none" : list) + ")");
 }
 
+/// Models by file, each read once.
+class ModelShelf {
+ public:
+  const std::shared_ptr<const render::Model>& load(const std::string& path) {
+    std::shared_ptr<const render::Model>& model = models_[path];
+    if (model) return model;
+    render::ImportResult result = render::import_gltf(path);
+    if (!result.model) throw UserError(path + ": " + result.error);
+    for (const std::string& warning : result.warnings) warnings_.push_back(path + ": " + warning);
+    model = result.model;
+    return model;
+  }
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
+ private:
+  std::map<std::string, std::shared_ptr<const render::Model>> models_;
+  std::vector<std::string> warnings_;
+};
+
 ModelBox model_box(const render::Model& model) {
   const render::Bounds bounds = render::model_bounds(model);
   return {Eigen::Vector3d(bounds.min.x, bounds.min.y, bounds.min.z),
@@ -36,32 +55,36 @@ ModelBox model_box(const render::Model& model) {
 
 }  // namespace
 
+void check_content(const SceneFile& scene, int first_frame, int end_frame) {
+  ModelShelf shelf;
+  for (const SceneObject& object : scene.objects) {
+    find_animation(*shelf.load(object.model.string()), object);
+    const auto* place = std::get_if<PixelPlace>(&object.place);
+    if (place != nullptr && (place->frame < first_frame || place->frame >= end_frame)) {
+      throw UserError(object.where + ": frame " + std::to_string(place->frame) +
+                      " is not there (frames: " + std::to_string(first_frame) + " to " +
+                      std::to_string(end_frame - 1) + ")");
+    }
+  }
+}
+
 Content load_content(const Reconstruction& reconstruction, const SceneFile& scene, bool causal) {
   Content content;
-  std::map<std::string, std::shared_ptr<const render::Model>> loaded;
+  ModelShelf shelf;
   for (const SceneObject& object : scene.objects) {
-    const std::string path = object.model.string();
-    std::shared_ptr<const render::Model>& model = loaded[path];
-    if (!model) {
-      render::ImportResult result = render::import_gltf(path);
-      if (!result.model) throw UserError(path + ": " + result.error);
-      model = result.model;
-      for (const std::string& warning : result.warnings) {
-        content.warnings.push_back(path + ": " + warning);
-      }
-    }
-    const ModelBox box = model_box(*model);
     ContentItem item;
-    item.model = model;
+    item.model = shelf.load(object.model.string());
+    const ModelBox box = model_box(*item.model);
     item.placed = place_object(reconstruction, object, box,
                                size_unit(reconstruction, scene, object, causal), causal);
-    item.animation = find_animation(*model, object);
+    item.animation = find_animation(*item.model, object);
     const Eigen::Vector3d sides = box.sizes() * item.placed.scale;
     item.longest_side = sides.maxCoeff();
     item.footprint = 0.5 * (item.placed.hangs ? sides.head<2>().norm()
                                               : Eigen::Vector2d(sides.x(), sides.z()).norm());
     content.items.push_back(item);
   }
+  content.warnings = shelf.warnings();
   return content;
 }
 

@@ -122,6 +122,7 @@ Choice choose_place(const Votes& votes, const PlaneOutline& outline,
 DefaultSceneOptions builtin_models() {
   DefaultSceneOptions options;
   options.standing_model = asset("models/robot.glb");
+  options.standing_animation = "Wave";
   options.hanging_model = asset("models/poster.glb");
   return options;
 }
@@ -152,7 +153,7 @@ SceneFile default_scene(const Reconstruction& reconstruction, const DefaultScene
   place.at = (choice.place - box.min()).cwiseQuotient(box.sizes());
   object.place = place;
   object.size = reconstruction.metric ? size : size / reconstruction.median_depth;
-  object.animation_index = 0;
+  if (!is_vertical(reconstruction, plane)) object.animation = options.standing_animation;
   SceneFile scene;
   scene.objects.push_back(object);
   return scene;

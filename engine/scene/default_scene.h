@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "engine/pipeline/reconstruction.h"
 #include "engine/scene/scene_file.h"
@@ -9,6 +10,7 @@ namespace planecast::engine {
 
 struct DefaultSceneOptions {
   std::filesystem::path standing_model;  ///< for planes that things stand on
+  std::string standing_animation;  ///< of it; empty: rest pose
   std::filesystem::path hanging_model;   ///< for walls
   double size_of_view = 0.3;    ///< longest side, of the distance it is usually seen from
   double size_of_patch = 0.6;   ///< at most this share of the free circle's diameter on the plane
