@@ -10,8 +10,9 @@
 
 namespace planecast::render {
 
-/// Pinhole camera in the field's convention: x right, y down, z forward; pixel centres are integers.
-/// Undistorted. fy may be negative (the picture is then upside down, as ICL-NUIM's model is).
+/// Pinhole camera in the field's convention: x right, y down, z forward; pixel centres are
+/// integers. Undistorted. fy may be negative (the picture is then upside down, as ICL-NUIM's model
+/// is).
 struct Camera {
   int width = 640;
   int height = 480;
@@ -23,15 +24,20 @@ struct Camera {
 
 struct Sun {
   glm::vec3 direction_to_light = {0.3F, -0.9F, 0.2F};  ///< unit, world
-  glm::vec3 radiance = glm::vec3(2.0F);                 ///< linear RGB irradiance on a facing surface / pi
+  glm::vec3 radiance = glm::vec3(2.0F);  ///< linear RGB irradiance on a facing surface / pi
   bool casts_shadow = true;
-  float softness = 1.0F;  ///< radius of the shadow's filter in shadow-map texels
+  float softness = 1.0F;  ///< radius of the shadow's filter in shadow-map texels, at least
+  /// Half the angle the light is wide: shadows on catchers blur with the distance of what casts them.
+  /// The sun's is 0.0046; lamps and windows are wider.
+  float angular_radius_rad = 0.05F;
 };
 
-/// Light of a scene: diffuse surroundings as spherical harmonics of order 2 (9 coefficients, linear RGB
-/// radiance, real SH basis) and one main direction.
+/// Light of a scene: diffuse surroundings as spherical harmonics of order 2 (9 coefficients, linear
+/// RGB radiance, real SH basis without the Condon-Shortley sign: 1, y, z, x, xy, yz, 3z^2-1, xz,
+/// x^2-y^2 of the world direction) and one main direction.
 struct Light {
-  std::array<glm::vec3, 9> ambient_sh{};  ///< [0] alone: uniform surroundings of radiance c / 3.5449
+  std::array<glm::vec3, 9>
+      ambient_sh{};  ///< [0] alone: uniform surroundings of radiance c / 3.5449
   Sun sun;
   static Light uniform(glm::vec3 ambient_radiance, Sun sun);
 };
@@ -42,12 +48,13 @@ class Model;
 struct Instance {
   std::shared_ptr<const Model> model;
   glm::mat4 world_from_model = glm::mat4(1.0F);  ///< glTF model space: y up, metres
-  int animation = -1;                             ///< index, -1 = rest pose
-  float animation_time_s = 0.0F;                  ///< looped by the renderer
+  int animation = -1;                            ///< index, -1 = rest pose
+  float animation_time_s = 0.0F;                 ///< looped by the renderer
 };
 
-/// A flat polygon of the world that receives shadows (catcher) or hides what is behind it (occluder):
-/// outer ring counter-clockwise seen from the normal's side, not closed, maybe concave, holes allowed.
+/// A flat polygon of the world that receives shadows (catcher) or hides what is behind it
+/// (occluder): outer ring counter-clockwise seen from the normal's side, not closed, maybe concave,
+/// holes allowed.
 struct PlanePatch {
   glm::vec3 normal{};
   std::vector<glm::vec3> outer;
@@ -65,22 +72,27 @@ struct LayerScene {
   float shadow_strength = 1.0F;  ///< 0 none .. 1 physically by the light
 };
 
-/// RGBA8, sRGB-encoded, premultiplied: out = layer.rgb + (1 - layer.a) * frame. A shadow is black with
-/// alpha. Depth in metres along z of the objects alone, 0 where there is none.
+/// RGBA8, sRGB-encoded, premultiplied: out = layer.rgb + (1 - layer.a) * frame. A shadow is black
+/// with alpha. Depth in metres along z of the objects alone, 0 where there is none.
 struct Layer {
   ImageU8 rgba;
   ImageF depth;
-  struct Rect { int x = 0, y = 0, width = 0, height = 0; } bounds;  ///< outside it all is transparent
+  struct Rect {
+    int x = 0, y = 0, width = 0, height = 0;
+  } bounds;  ///< outside it all is transparent
 };
 
-/// A surface of an opaque scene such as the synthetic generator's: own triangles, one material.
+/// A surface of an opaque scene such as the synthetic generator's: own triangles, one material. Lit by
+/// its normals from either side; casts a shadow only where its normal faces the sun, so that the walls
+/// of a closed room let the sun in.
 struct SurfaceMesh {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;
   std::vector<glm::vec2> uvs;
   std::vector<std::uint32_t> indices;
-  std::shared_ptr<const ImageU8> base_color;  ///< 3 or 4 channels, sRGB; repeated; mip-mapped, anisotropic
-  glm::vec3 color_factor = glm::vec3(1.0F);   ///< linear
+  std::shared_ptr<const ImageU8>
+      base_color;  ///< 3 or 4 channels, sRGB; repeated; mip-mapped, anisotropic
+  glm::vec3 color_factor = glm::vec3(1.0F);  ///< linear
   float roughness = 0.9F;
   int label = 0;  ///< written to OpaqueImages::labels
 };
@@ -93,9 +105,9 @@ struct OpaqueScene {
 };
 
 struct OpaqueImages {
-  ImageU8 rgb;                    ///< sRGB
-  ImageF depth;                   ///< metres along z, 0 where nothing is; at pixel centres, no MSAA
-  Image<std::uint16_t> labels;    ///< at pixel centres, no MSAA
+  ImageU8 rgb;                  ///< sRGB
+  ImageF depth;                 ///< metres along z, 0 where nothing is; at pixel centres, no MSAA
+  Image<std::uint16_t> labels;  ///< at pixel centres, no MSAA
 };
 
 }  // namespace planecast::render

@@ -51,6 +51,8 @@ void Map::erase_keyframe(KeyframeId keyframe) {
   if (found == nullptr) return;
   const KeyframeId parent = found->parent;
   const std::vector<LandmarkId> seen = found->landmarks;
+  erased_keyframes_.push_back(
+      {keyframe, parent, found->cam_from_world * keyframe_pose(parent).inverse()});
   for (const LandmarkId landmark : seen) {
     if (landmark != kNone) remove_observation(landmark, keyframe);
   }
@@ -58,6 +60,22 @@ void Map::erase_keyframe(KeyframeId keyframe) {
     if (other.parent == keyframe) other.parent = parent;
   }
   keyframes.erase(keyframe);
+}
+
+Pose Map::keyframe_pose(KeyframeId keyframe) const {
+  if (const Keyframe* alive = keyframes.find(keyframe)) return alive->cam_from_world;
+  for (const ErasedKeyframe& erased : erased_keyframes_) {
+    if (erased.id == keyframe) return erased.cam_from_parent * keyframe_pose(erased.parent);
+  }
+  return Pose::Identity();
+}
+
+KeyframeId Map::living_ancestor(KeyframeId keyframe) const {
+  if (keyframe == kNone || keyframes.contains(keyframe)) return keyframe;
+  for (const ErasedKeyframe& erased : erased_keyframes_) {
+    if (erased.id == keyframe) return living_ancestor(erased.parent);
+  }
+  return kNone;
 }
 
 void Map::replace_landmark(LandmarkId from, LandmarkId to) {
@@ -179,6 +197,7 @@ void Map::transform(double scale, const Pose& new_from_old) {
     landmark.min_distance *= scale;
     landmark.max_distance *= scale;
   }
+  for (ErasedKeyframe& erased : erased_keyframes_) erased.cam_from_parent.translation() *= scale;
   for (Plane& plane : planes) {
     plane.normal = new_from_old.linear() * plane.normal;
     plane.x_axis = new_from_old.linear() * plane.x_axis;

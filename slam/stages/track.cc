@@ -44,20 +44,12 @@ void Tracker::start(const ImageFeatures& image, const PoseEstimate& estimate,
   last_keyframe_frame_ = image.frame_index;
 }
 
-void Tracker::keyframe_inserted(KeyframeId keyframe, int frame_index, const Map& map) {
-  reference_ = keyframe;
-  cam_from_reference_ = Pose::Identity();
-  last_keyframe_frame_ = frame_index;
-  last_.matches = map.keyframes.at(keyframe).landmarks;
-}
-
 void Tracker::follow_map(const Map& map) {
+  if (lost_) return;
   for (LandmarkId& id : last_.matches) {
     if (id != kNone) id = map.resolve(id);
   }
-  const Keyframe* reference = map.keyframes.find(reference_);
-  if (reference == nullptr) return;
-  last_.cam_from_world = cam_from_reference_ * reference->cam_from_world;
+  last_.cam_from_world = cam_from_reference_ * map.keyframe_pose(reference_);
 }
 
 PoseEstimate Tracker::match_from_last(const ImageFeatures& image, const Map& map,

@@ -44,9 +44,9 @@ class Tracker {
   /// Starts from a known pose (after initialisation).
   void start(const ImageFeatures& image, const PoseEstimate& estimate, KeyframeId reference);
   TrackResult track(const ImageFeatures& image, const Map& map);
-  /// Tells that the last image became a keyframe: from now on its landmarks are known as they are in the map.
-  void keyframe_inserted(KeyframeId keyframe, int frame_index, const Map& map);
-  /// After the map was changed as a whole (bundle adjustment): takes over the keyframe's new pose.
+  /// Tells that the last image is to become a keyframe.
+  void keyframe_requested(int frame_index) { last_keyframe_frame_ = frame_index; }
+  /// A new state of the map: the last pose goes along with its reference, landmarks with their heirs.
   void follow_map(const Map& map);
 
  private:

@@ -1,0 +1,130 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/image.h"
+#include "render/vertex.h"
+
+namespace planecast::render {
+
+/// Filters and wraps are OpenGL's numbers, as glTF has them.
+struct ModelTexture {
+  int image = -1;
+  int min_filter = 9987;
+  int mag_filter = 9729;
+  int wrap_s = 10497;
+  int wrap_t = 10497;
+};
+
+/// A use of a texture by a material.
+struct TextureSlot {
+  int texture = -1;  ///< -1: none
+  int uv_set = 0;
+  glm::mat3 transform = glm::mat3(1.0F);  ///< KHR_texture_transform, of (u, v, 1)
+};
+
+enum class AlphaMode { kOpaque, kMask, kBlend };
+
+/// glTF 2.0 metallic-roughness, section 3.9.
+struct Material {
+  glm::vec4 base_color = glm::vec4(1.0F);  ///< linear
+  float metallic = 1.0F;
+  float roughness = 1.0F;
+  glm::vec3 emissive{};
+  float normal_scale = 1.0F;
+  float occlusion_strength = 1.0F;
+  float alpha_cutoff = 0.5F;
+  AlphaMode alpha_mode = AlphaMode::kOpaque;
+  bool double_sided = false;
+  bool unlit = false;
+  TextureSlot base_color_map;
+  TextureSlot metallic_roughness_map;
+  TextureSlot normal_map;
+  TextureSlot occlusion_map;
+  TextureSlot emissive_map;
+};
+
+/// Differences to the base shape; normals and tangents may be empty.
+struct MorphTarget {
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;
+  std::vector<glm::vec3> tangents;
+};
+
+/// Indexed triangles with one material. Every stream has one entry a vertex or is empty.
+struct Primitive {
+  std::vector<ShapeVertex> shape;
+  std::vector<SurfaceVertex> surface;
+  std::vector<std::uint32_t> indices;
+  std::vector<std::array<std::uint16_t, 4>> joints;
+  std::vector<glm::vec4> joint_weights;
+  std::vector<MorphTarget> targets;
+  int material = 0;
+  Box box;                    ///< of the base shape
+  bool flat_normals = false;  ///< three vertices a triangle, normals follow the shape
+};
+
+struct Mesh {
+  std::vector<Primitive> primitives;
+  std::vector<float> weights;
+};
+
+struct NodeTransform {
+  glm::vec3 translation{};
+  glm::quat rotation{1.0F, 0.0F, 0.0F, 0.0F};
+  glm::vec3 scale = glm::vec3(1.0F);
+};
+
+struct Node {
+  std::string name;
+  int parent = -1;
+  int mesh = -1;
+  int skin = -1;
+  NodeTransform rest;
+  std::optional<glm::mat4> matrix;  ///< instead of `rest`; such a node is not animated
+  std::vector<float> weights;
+};
+
+struct Skin {
+  std::vector<int> joints;                      ///< nodes
+  std::vector<glm::mat4> joint_from_skin_bind;  ///< inverse bind matrices
+};
+
+enum class ChannelPath { kTranslation, kRotation, kScale, kWeights };
+enum class Interpolation { kStep, kLinear, kCubicSpline };
+
+struct AnimationChannel {
+  int node = -1;
+  ChannelPath path = ChannelPath::kTranslation;
+  Interpolation interpolation = Interpolation::kLinear;
+  std::vector<float> times_s;  ///< increasing
+  std::vector<float> values;   ///< `width` a key; three times that (in, value, out) for splines
+  int width = 3;
+};
+
+struct Animation {
+  std::string name;
+  float duration_s = 0.0F;
+  std::vector<AnimationChannel> channels;
+};
+
+/// A glTF file, validated: every index in it points to something that exists.
+class Model {
+ public:
+  std::vector<ImageU8> images;
+  std::vector<ModelTexture> textures;
+  std::vector<Material> materials;  ///< the last one is the default material
+  std::vector<Mesh> meshes;
+  std::vector<Node> nodes;
+  std::vector<int> order;  ///< nodes of the default scene, parents before children
+  std::vector<Skin> skins;
+  std::vector<Animation> animations;
+};
+
+}  // namespace planecast::render

@@ -1,0 +1,187 @@
+#include "render/gltf/nodes.h"
+
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/type_ptr.hpp>
+#include <utility>
+
+#include "render/gltf/accessors.h"
+
+namespace planecast::render {
+namespace {
+
+void check_index(int index, std::size_t size, const char* what) {
+  if (index >= static_cast<int>(size) || index < 0) {
+    throw ImportError(std::string(what) + " " + std::to_string(index) + " does not exist");
+  }
+}
+
+Node convert_node(const tinygltf::Node& from, const Model& model, std::size_t skins) {
+  Node node;
+  node.name = from.name;
+  if (from.mesh >= 0) check_index(from.mesh, model.meshes.size(), "mesh");
+  if (from.skin >= 0) check_index(from.skin, skins, "skin");
+  node.mesh = from.mesh;
+  node.skin = from.skin;
+  if (from.matrix.size() == 16) {
+    node.matrix = glm::mat4(glm::make_mat4(from.matrix.data()));
+  }
+  if (from.translation.size() == 3) node.rest.translation = glm::make_vec3(from.translation.data());
+  if (from.scale.size() == 3) node.rest.scale = glm::make_vec3(from.scale.data());
+  if (from.rotation.size() == 4) {
+    const auto& q = from.rotation;
+    const glm::quat rotation(static_cast<float>(q[3]), static_cast<float>(q[0]),
+                             static_cast<float>(q[1]), static_cast<float>(q[2]));
+    if (glm::length(rotation) > 0.0F) node.rest.rotation = glm::normalize(rotation);
+  }
+  node.weights.assign(from.weights.begin(), from.weights.end());
+  return node;
+}
+
+void link_children(const tinygltf::Model& file, Model& model) {
+  for (std::size_t parent = 0; parent < file.nodes.size(); ++parent) {
+    for (const int child : file.nodes[parent].children) {
+      check_index(child, model.nodes.size(), "node");
+      Node& node = model.nodes[static_cast<std::size_t>(child)];
+      if (node.parent >= 0) throw ImportError("a node has two parents");
+      node.parent = static_cast<int>(parent);
+    }
+  }
+}
+
+/// With one parent a node, a cycle shows as a chain of parents longer than there are nodes.
+void check_no_cycles(const Model& model) {
+  for (const Node& start : model.nodes) {
+    std::size_t steps = 0;
+    for (int up = start.parent; up >= 0; up = model.nodes[static_cast<std::size_t>(up)].parent) {
+      if (++steps > model.nodes.size()) throw ImportError("the nodes form a cycle");
+    }
+  }
+}
+
+/// Without scenes everything that has no parent is drawn.
+std::vector<int> scene_roots(const tinygltf::Model& file, const Model& model) {
+  if (file.scenes.empty()) {
+    std::vector<int> roots;
+    for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+      if (model.nodes[i].parent < 0) roots.push_back(static_cast<int>(i));
+    }
+    return roots;
+  }
+  const int scene = file.defaultScene < 0 ? 0 : file.defaultScene;
+  check_index(scene, file.scenes.size(), "scene");
+  return file.scenes[static_cast<std::size_t>(scene)].nodes;
+}
+
+ChannelPath channel_path(const std::string& name) {
+  if (name == "translation") return ChannelPath::kTranslation;
+  if (name == "rotation") return ChannelPath::kRotation;
+  if (name == "scale") return ChannelPath::kScale;
+  if (name == "weights") return ChannelPath::kWeights;
+  throw ImportError("an animation moves the unknown property " + name);
+}
+
+std::size_t target_count(const Model& model, const Node& node) {
+  if (node.mesh < 0) return 0;
+  std::size_t count = 0;
+  for (const Primitive& primitive : model.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
+    count = std::max(count, primitive.targets.size());
+  }
+  return count;
+}
+
+AnimationChannel convert_channel(const tinygltf::Model& file, const tinygltf::Animation& animation,
+                                 const tinygltf::AnimationChannel& from, const Model& model) {
+  check_index(from.sampler, animation.samplers.size(), "animation sampler");
+  check_index(from.target_node, model.nodes.size(), "node");
+  const auto& sampler = animation.samplers[static_cast<std::size_t>(from.sampler)];
+  const AccessorReader reader(file);
+  AnimationChannel channel;
+  channel.node = from.target_node;
+  channel.path = channel_path(from.target_path);
+  if (sampler.interpolation == "STEP") channel.interpolation = Interpolation::kStep;
+  if (sampler.interpolation == "CUBICSPLINE") channel.interpolation = Interpolation::kCubicSpline;
+  channel.times_s = reader.floats(sampler.input, 1);
+  for (std::size_t i = 0; i < channel.times_s.size(); ++i) {
+    const bool grows = i == 0 || channel.times_s[i] >= channel.times_s[i - 1];
+    if (!std::isfinite(channel.times_s[i]) || !grows) {
+      throw ImportError("the times of an animation do not increase");
+    }
+  }
+  const Node& node = model.nodes[static_cast<std::size_t>(channel.node)];
+  if (channel.path == ChannelPath::kWeights) {
+    channel.width = static_cast<int>(target_count(model, node));
+  } else if (channel.path == ChannelPath::kRotation) {
+    channel.width = 4;
+  }
+  const int components = channel.path == ChannelPath::kWeights ? 1 : channel.width;
+  channel.values = reader.floats(sampler.output, components);
+  const std::size_t parts = channel.interpolation == Interpolation::kCubicSpline ? 3 : 1;
+  if (channel.values.size() !=
+      channel.times_s.size() * parts * static_cast<std::size_t>(channel.width)) {
+    throw ImportError("an animation has a wrong number of values");
+  }
+  return channel;
+}
+
+}  // namespace
+
+void import_nodes(const tinygltf::Model& file, Model& model) {
+  for (const auto& node : file.nodes) {
+    model.nodes.push_back(convert_node(node, model, file.skins.size()));
+  }
+  link_children(file, model);
+  check_no_cycles(model);
+
+  std::vector<std::uint8_t> seen(model.nodes.size(), 0);
+  std::vector<int> waiting = scene_roots(file, model);
+  std::reverse(waiting.begin(), waiting.end());
+  while (!waiting.empty()) {
+    const int index = waiting.back();
+    waiting.pop_back();
+    check_index(index, model.nodes.size(), "node");
+    if (std::exchange(seen[static_cast<std::size_t>(index)], 1) != 0) continue;
+    model.order.push_back(index);
+    const auto& children = file.nodes[static_cast<std::size_t>(index)].children;
+    waiting.insert(waiting.end(), children.rbegin(), children.rend());
+  }
+}
+
+void import_skins(const tinygltf::Model& file, Model& model) {
+  const AccessorReader reader(file);
+  for (const auto& from : file.skins) {
+    Skin skin;
+    skin.joints = from.joints;
+    for (const int joint : skin.joints) check_index(joint, model.nodes.size(), "joint");
+    if (skin.joints.empty()) throw ImportError("a skin has no joints");
+    skin.joint_from_skin_bind.assign(skin.joints.size(), glm::mat4(1.0F));
+    if (from.inverseBindMatrices >= 0) {
+      const auto values = reader.floats(from.inverseBindMatrices, 16);
+      if (values.size() / 16 < skin.joints.size()) {
+        throw ImportError("a skin has too few inverse bind matrices");
+      }
+      for (std::size_t i = 0; i < skin.joints.size(); ++i) {
+        skin.joint_from_skin_bind[i] = glm::make_mat4(&values[16 * i]);
+      }
+    }
+    model.skins.push_back(std::move(skin));
+  }
+}
+
+void import_animations(const tinygltf::Model& file, Model& model) {
+  for (const auto& from : file.animations) {
+    Animation animation;
+    animation.name = from.name;
+    for (const auto& channel : from.channels) {
+      if (channel.target_node < 0) continue;
+      animation.channels.push_back(convert_channel(file, from, channel, model));
+      animation.duration_s =
+          std::max(animation.duration_s, animation.channels.back().times_s.back());
+    }
+    model.animations.push_back(std::move(animation));
+  }
+}
+
+}  // namespace planecast::render

@@ -1,0 +1,7 @@
+#pragma once
+
+namespace tinygltf {
+class Model;
+struct Material;
+struct Primitive;
+}  // namespace tinygltf

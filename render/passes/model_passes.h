@@ -1,0 +1,50 @@
+#pragma once
+
+#include <vector>
+
+#include "render/passes/models.h"
+#include "render/passes/shadow_map.h"
+#include "render/scene.h"
+
+namespace planecast::render {
+
+/// What the shaded pass needs beside the items.
+struct ShadingInput {
+  const Camera* camera = nullptr;
+  const Light* light = nullptr;
+  const ShadowMap* shadow = nullptr;  ///< null: nothing is in shadow
+  GLuint occluder_depth = 0;          ///< texture of the camera's size, 0: none
+  float occluder_tolerance = 0.02F;
+  float exposure = 1.0F;
+  bool multisampled = true;
+};
+
+/// Draws posed models; one object for the passes they appear in.
+class ModelPasses {
+ public:
+  ModelPasses(const Gl& gl, ShaderLibrary& shaders, const ModelSet& models)
+      : gl_(&gl), shaders_(&shaders), models_(&models) {}
+
+  /// Depth alone, seen along `clip_from_world`, into whatever target is bound.
+  void draw_depth(const std::vector<DrawItem>& items, const glm::mat4& clip_from_world) const;
+  /// Metallic-roughness shading, premultiplied and encoded: opaque and masked items first, then
+  /// blended ones from back to front.
+  void draw_color(const std::vector<DrawItem>& items, const ShadingInput& input) const;
+  /// Depth in metres and label 0 into a GeometryTarget.
+  void draw_geometry(const std::vector<DrawItem>& items, const ShadingInput& input) const;
+  /// Highest top and lowest underside above a plane, seen along its normal; see heights.frag.
+  void draw_heights(const std::vector<DrawItem>& items, const glm::mat4& clip_from_world,
+                    const glm::vec4& plane) const;
+
+ private:
+  void draw_shaded(const DrawItem& item, const ShadingInput& input) const;
+  void set_cut_out(const DrawItem& item, const Program& program) const;
+  void bind_map(const DrawItem& item, const Program& program, const TextureSlot& slot, bool srgb,
+                unsigned unit, const char* name) const;
+
+  const Gl* gl_;
+  ShaderLibrary* shaders_;
+  const ModelSet* models_;
+};
+
+}  // namespace planecast::render

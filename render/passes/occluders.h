@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "render/gl/objects.h"
+#include "render/gl/program.h"
+#include "render/scene.h"
+
+namespace planecast::render {
+
+/// Writes the depth of flat polygons, concave and with holes, and nothing else. Filled by the even-odd
+/// rule in the stencil buffer, so that the measured outlines need neither triangulation nor to be
+/// simple. Pushed back by a small share of the depth, so that what stands on a plane is not cut by it.
+class OccluderPass {
+ public:
+  explicit OccluderPass(const Gl& gl);
+
+  /// Into the bound target, whose stencil is clear and stays so.
+  void draw(ShaderLibrary& shaders, const std::vector<PlanePatch>& occluders, const Camera& camera);
+
+ private:
+  void load(const std::vector<glm::vec3>& points);
+
+  const Gl* gl_;
+  BufferHandle points_;
+  VertexArrayHandle vertex_array_;
+};
+
+}  // namespace planecast::render

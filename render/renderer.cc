@@ -1,0 +1,290 @@
+#include "render/renderer.h"
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "render/context/context.h"
+#include "render/gl/program.h"
+#include "render/passes/catchers.h"
+#include "render/passes/content_hash.h"
+#include "render/passes/model_passes.h"
+#include "render/passes/models.h"
+#include "render/passes/occluders.h"
+#include "render/passes/surfaces.h"
+#include "render/passes/targets.h"
+#include "render/passes/view.h"
+
+namespace planecast::render {
+namespace {
+
+constexpr float kSqrt4Pi = 3.5449077F;
+/// A shadow's plane was fitted to the same depths that occlude it, so it gets more leeway.
+constexpr float kCatcherTolerance = 2.5F;
+/// Pixels around the projected bounds: one for the resolve, one for rounding.
+constexpr int kBoundsMargin = 2;
+
+std::unique_ptr<GlContext> create_current_context(const RendererOptions& options) {
+  auto context = create_context(options.context);
+  context->make_current();
+  return context;
+}
+
+void check_camera(const Camera& camera) {
+  constexpr int kLargestSide = 16384;
+  if (camera.width < 1 || camera.height < 1 || camera.width > kLargestSide ||
+      camera.height > kLargestSide) {
+    throw std::invalid_argument("renderer: picture size " + std::to_string(camera.width) + "x" +
+                                std::to_string(camera.height));
+  }
+}
+
+bool casts(const Sun& sun) { return sun.casts_shadow && sun.radiance != glm::vec3(0.0F); }
+
+float shadow_margin_texels(const Sun& sun) { return 3.0F + 2.0F * sun.softness; }
+
+/// What the shadows of a frame depend on, except the planes they fall on.
+std::uint64_t caster_signature(const std::vector<Instance>& instances, const Sun& sun) {
+  ContentHash hash;
+  for (const Instance& instance : instances) {
+    hash.add(instance.model.get());
+    hash.add(instance.world_from_model);
+    hash.add(instance.animation);
+    hash.add(instance.animation_time_s);
+  }
+  hash.add(sun.direction_to_light);
+  hash.add(sun.softness);
+  hash.add(casts(sun));
+  return hash.value();
+}
+
+}  // namespace
+
+Light Light::uniform(glm::vec3 ambient_radiance, Sun sun) {
+  Light light;
+  light.ambient_sh[0] = ambient_radiance * kSqrt4Pi;
+  light.sun = sun;
+  return light;
+}
+
+struct Renderer::Impl {
+  explicit Impl(const RendererOptions& given)
+      : options(given),
+        context(create_current_context(given)),
+        gl(load_functions(*context)),
+        shaders(gl, given.shader_dir),
+        shadow_map(gl, std::clamp(given.shadow_map_size, 64, 8192)),
+        surfaces(gl),
+        models(gl),
+        model_passes(gl, shaders, models),
+        catchers(gl, model_passes),
+        occluders(gl) {
+    gl.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  }
+
+  /// Targets of the camera's size; kept while it stays the same.
+  void resize(const Camera& camera) {
+    check_camera(camera);
+    if (color && color->width() == camera.width && color->height() == camera.height) return;
+    color.emplace(gl, camera.width, camera.height, options.msaa_samples > 1 ? 4 : 1);
+    geometry.emplace(gl, camera.width, camera.height);
+    occluder_depth = TextureHandle();
+  }
+
+  Layer draw_layer(const LayerScene& scene, const Camera& camera);
+  void draw_layer_color(const LayerScene& scene, const Camera& camera,
+                        const CatcherInput& catching, const ShadingInput& shading, Layer& layer);
+  OpaqueImages draw_opaque(const OpaqueScene& scene, const Camera& camera);
+  void draw_shadow_map(const ShadowProjection& projection, const std::vector<DrawItem>& items,
+                       const Sun& sun, bool with_surfaces, std::uint64_t signature);
+  GLuint upload_occluder_depth(const LayerScene& scene, const Camera& camera);
+  void begin_opaque_state() const;
+
+  RendererOptions options;
+  std::unique_ptr<GlContext> context;
+  Gl gl;
+  ShaderLibrary shaders;
+  ShadowMap shadow_map;
+  std::uint64_t shadow_signature = 0;
+  SurfaceSet surfaces;
+  ModelSet models;
+  ModelPasses model_passes;
+  CatcherPass catchers;
+  OccluderPass occluders;
+  std::optional<ColorTarget> color;
+  std::optional<GeometryTarget> geometry;
+  TextureHandle occluder_depth;
+};
+
+void Renderer::Impl::begin_opaque_state() const {
+  gl.Enable(GL_DEPTH_TEST);
+  gl.DepthFunc(GL_GREATER);
+  gl.DepthMask(GL_TRUE);
+  gl.Disable(GL_CULL_FACE);
+  gl.Disable(GL_BLEND);
+}
+
+void Renderer::Impl::draw_shadow_map(const ShadowProjection& projection,
+                                     const std::vector<DrawItem>& items, const Sun& sun,
+                                     bool with_surfaces, std::uint64_t signature) {
+  if (signature == shadow_signature) return;
+  shadow_signature = signature;
+  shadow_map.begin(projection);
+  // Casters step back by their slope, so that they do not shade themselves between texels.
+  constexpr float kSlopeTexels = 1.5F;
+  gl.Enable(GL_POLYGON_OFFSET_FILL);
+  gl.PolygonOffset(kSlopeTexels, 0.0F);
+  if (with_surfaces) {
+    surfaces.draw_shadow(shaders, projection, glm::normalize(sun.direction_to_light));
+  }
+  model_passes.draw_depth(items, projection.clip_from_world);
+  gl.Disable(GL_POLYGON_OFFSET_FILL);
+}
+
+GLuint Renderer::Impl::upload_occluder_depth(const LayerScene& scene, const Camera& camera) {
+  const ImageF* depth = scene.occluder_depth;
+  if (depth == nullptr || depth->width != camera.width || depth->height != camera.height) return 0;
+  if (!occluder_depth) occluder_depth = make_target(gl, GL_R32F, camera.width, camera.height);
+  gl.PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  gl.TextureSubImage2D(occluder_depth.id(), 0, 0, 0, camera.width, camera.height, GL_RED, GL_FLOAT,
+                       depth->pixels.data());
+  return occluder_depth.id();
+}
+
+Layer Renderer::Impl::draw_layer(const LayerScene& scene, const Camera& camera) {
+  resize(camera);
+  Layer layer;
+  layer.rgba = ImageU8(camera.width, camera.height, 4);
+  layer.depth = ImageF(camera.width, camera.height, 1);
+  const std::vector<DrawItem>& items = models.pose(scene.instances);
+  if (items.empty()) return layer;
+
+  const std::vector<glm::vec3> points = world_box_points(items);
+  const Sun& sun = scene.light.sun;
+  const std::uint64_t signature = caster_signature(scene.instances, sun);
+  const ShadowMap* shadow = nullptr;
+  if (casts(sun)) {
+    draw_shadow_map(fit_shadow(sun.direction_to_light, points, shadow_map.size(),
+                               shadow_margin_texels(sun)),
+                    items, sun, false, signature);
+    shadow = &shadow_map;
+  }
+  const CatcherInput catching{&scene, &camera, &items, &points, shadow, signature};
+  catchers.prepare(shaders, catching);
+
+  Layer::Rect bounds;
+  for (std::size_t i = 0; i < points.size(); i += 8) {
+    const auto first = points.begin() + static_cast<std::ptrdiff_t>(i);
+    bounds = united(bounds, projected_bounds(camera, {first, first + 8}));
+  }
+  const std::vector<glm::vec3> dark = catchers.touched_points();
+  for (std::size_t i = 0; i < dark.size(); i += 4) {
+    const auto first = dark.begin() + static_cast<std::ptrdiff_t>(i);
+    bounds = united(bounds, projected_bounds(camera, {first, first + 4}));
+  }
+  layer.bounds = grown(bounds, kBoundsMargin, camera);
+  if (layer.bounds.width == 0) return layer;
+
+  ShadingInput shading;
+  shading.camera = &camera;
+  shading.light = &scene.light;
+  shading.shadow = shadow;
+  shading.occluder_depth = upload_occluder_depth(scene, camera);
+  shading.multisampled = options.msaa_samples > 1;
+  draw_layer_color(scene, camera, catching, shading, layer);
+
+  geometry->begin(layer.bounds);
+  begin_opaque_state();
+  occluders.draw(shaders, scene.occluders, camera);
+  begin_opaque_state();
+  model_passes.draw_geometry(items, shading);
+  geometry->read_depth(layer.bounds, layer.depth);
+  return layer;
+}
+
+void Renderer::Impl::draw_layer_color(const LayerScene& scene, const Camera& camera,
+                                      const CatcherInput& catching, const ShadingInput& shading,
+                                      Layer& layer) {
+  color->begin(layer.bounds);
+  begin_opaque_state();
+  occluders.draw(shaders, scene.occluders, camera);
+  catchers.draw(shaders, catching, shading.occluder_depth,
+                kCatcherTolerance * shading.occluder_tolerance);
+  begin_opaque_state();
+  model_passes.draw_color(*catching.items, shading);
+  color->resolve(layer.bounds, layer.rgba);
+}
+
+OpaqueImages Renderer::Impl::draw_opaque(const OpaqueScene& scene, const Camera& camera) {
+  resize(camera);
+  surfaces.update(scene.surfaces);
+  const std::vector<DrawItem>& items = models.pose(scene.instances);
+  const Sun& sun = scene.light.sun;
+  const ShadowMap* shadow = nullptr;
+  if (casts(sun)) {
+    std::vector<glm::vec3> points = world_box_points(items);
+    points.insert(points.end(), surfaces.box_points().begin(), surfaces.box_points().end());
+    ContentHash signature;
+    signature.add(caster_signature(scene.instances, sun));
+    signature.add(surfaces.signature());
+    draw_shadow_map(fit_shadow(sun.direction_to_light, points, shadow_map.size(),
+                               shadow_margin_texels(sun)),
+                    items, sun, true, signature.value());
+    shadow = &shadow_map;
+  }
+
+  ShadingInput shading;
+  shading.camera = &camera;
+  shading.light = &scene.light;
+  shading.shadow = shadow;
+  shading.exposure = scene.exposure;
+  shading.multisampled = options.msaa_samples > 1;
+
+  const Layer::Rect whole{0, 0, camera.width, camera.height};
+  color->begin(whole);
+  begin_opaque_state();
+  surfaces.draw_color(shaders, scene, camera, shadow);
+  model_passes.draw_color(items, shading);
+  OpaqueImages images{ImageU8(camera.width, camera.height, 3),
+                      ImageF(camera.width, camera.height, 1),
+                      Image<std::uint16_t>(camera.width, camera.height, 1)};
+  color->resolve(whole, images.rgb);
+
+  geometry->begin(whole);
+  begin_opaque_state();
+  surfaces.draw_geometry(shaders, scene.surfaces, camera);
+  model_passes.draw_geometry(items, shading);
+  geometry->read_depth(whole, images.depth);
+  geometry->read_labels(whole, images.labels);
+  return images;
+}
+
+Renderer::Renderer(const RendererOptions& options) : impl_(std::make_unique<Impl>(options)) {}
+
+Renderer::~Renderer() { impl_->context->make_current(); }
+
+Layer Renderer::draw_layer(const LayerScene& scene, const Camera& camera) {
+  impl_->context->make_current();
+  return impl_->draw_layer(scene, camera);
+}
+
+OpaqueImages Renderer::draw_opaque(const OpaqueScene& scene, const Camera& camera) {
+  impl_->context->make_current();
+  return impl_->draw_opaque(scene, camera);
+}
+
+void Renderer::forget() {
+  impl_->context->make_current();
+  impl_->surfaces.clear();
+  impl_->models.clear();
+  impl_->catchers.clear();
+  impl_->shadow_signature = 0;
+}
+
+std::string Renderer::description() const {
+  impl_->context->make_current();
+  return reinterpret_cast<const char*>(impl_->gl.GetString(GL_VERSION));
+}
+
+}  // namespace planecast::render
