@@ -38,7 +38,7 @@ constexpr double kBackgroundCost = 0.5;
 constexpr int kMaxModelsWithoutMasks = 8;
 /// Implausible fits after which nothing better is expected: fits come in order of their score.
 constexpr int kMaxImplausible = 2;
-constexpr int kMaxSamples = 1000;
+constexpr int kMaxSamples = 500;
 
 /// Half of the samples are uniform [P], half are a point and two of its neighbours in the image
 /// [D]: without masks a plane may have a tenth of the points, of which uniform samples find a
