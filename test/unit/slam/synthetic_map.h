@@ -60,6 +60,7 @@ inline MapScene make_map(const std::vector<Eigen::Vector3d>& points, const MapOp
       const Eigen::Vector2d exact = scene.camera.project(in_camera);
       if (!scene.camera.contains(exact)) continue;
       Keypoint keypoint;
+      keypoint.raw.setZero();
       keypoint.octave = random.below(3);
       Eigen::Vector2d pixel =
           noisy(exact, options.noise_px * std::pow(1.2, keypoint.octave), random);
