@@ -23,6 +23,8 @@ struct RunCommand {
 
  private:
   engine::Reconstruction reconstruct(engine::Sequence& sequence, const Console& console) const;
+  engine::ReportInput report_input(const engine::Sequence& sequence,
+                                   const engine::RenderSequenceResult& result) const;
 };
 
 /// Tracks, or, to resume, takes what an earlier run has completed.
@@ -36,6 +38,27 @@ engine::Reconstruction RunCommand::reconstruct(engine::Sequence& sequence, const
       track_with_progress(sequence, tracking.resolve(common, input), console);
   engine::write_reconstruction(reconstruction, output);
   return reconstruction;
+}
+
+engine::ReportInput RunCommand::report_input(const engine::Sequence& sequence,
+                                             const engine::RenderSequenceResult& result) const {
+  engine::ReportInput page;
+  page.title = sequence.name();
+  for (const auto& [frame, picture] : result.stills) {
+    page.stills.push_back({"frame " + std::to_string(frame), picture});
+  }
+  page.facts.emplace_back("Scene", rendering.scene.empty() ? "built-in" : rendering.scene);
+  page.facts.emplace_back("Content in view", std::to_string(result.with_content) + " of " +
+                                                            std::to_string(result.frames) + " frames");
+  for (const auto& [step, ms] : result.mean_ms) {
+    char text[32];
+    std::snprintf(text, sizeof(text), "%.1f ms a frame", ms);
+    page.facts.emplace_back("Rendering: " + step, text);
+  }
+  page.warnings = result.warnings;
+  if (!result.video.empty()) page.links.push_back("augmented.mp4");
+  page.links.push_back("scene.glb");
+  return page;
 }
 
 int RunCommand::run() const {
@@ -56,7 +79,8 @@ int RunCommand::run() const {
     console.warning(error.what());
     result = render_with_progress(*sequence, reconstruction, engine::SceneFile{}, options, output, console);
   }
-  engine::write_report(reconstruction, result.stills, std::filesystem::path(output) / "report.html");
+  engine::write_report(reconstruction, report_input(*sequence, result),
+                       std::filesystem::path(output) / "report.html");
   report_rendering(result, output, console);
   if (tracked.poor) console.warning("tracking was lost for more than half of the frames");
   return tracked.poor || !result.unreadable.empty() ? kPoorResult : kDone;
