@@ -23,8 +23,9 @@ struct RunCommand {
 
  private:
   engine::Reconstruction reconstruct(engine::Sequence& sequence, const Console& console) const;
-  engine::ReportInput report_input(const engine::Sequence& sequence,
-                                   const engine::RenderSequenceResult& result) const;
+  void write_report(const engine::Reconstruction& reconstruction,
+                    const engine::RenderSequenceResult& result,
+                    const engine::Sequence& sequence) const;
 };
 
 /// Tracks, or, to resume, takes what an earlier run has completed.
@@ -40,25 +41,23 @@ engine::Reconstruction RunCommand::reconstruct(engine::Sequence& sequence, const
   return reconstruction;
 }
 
-engine::ReportInput RunCommand::report_input(const engine::Sequence& sequence,
-                                             const engine::RenderSequenceResult& result) const {
-  engine::ReportInput page;
-  page.title = sequence.name();
+void RunCommand::write_report(const engine::Reconstruction& reconstruction,
+                              const engine::RenderSequenceResult& result,
+                              const engine::Sequence& sequence) const {
+  engine::ReportInput report;
+  report.title = sequence.name();
   for (const auto& [frame, picture] : result.stills) {
-    page.stills.push_back({"frame " + std::to_string(frame), picture});
+    report.stills.push_back({"frame " + std::to_string(frame), picture});
   }
-  page.facts.emplace_back("Scene", rendering.scene.empty() ? "built-in" : rendering.scene);
-  page.facts.emplace_back("Content in view", std::to_string(result.with_content) + " of " +
-                                                            std::to_string(result.frames) + " frames");
-  for (const auto& [step, ms] : result.mean_ms) {
-    char text[32];
-    std::snprintf(text, sizeof(text), "%.1f ms a frame", ms);
-    page.facts.emplace_back("Rendering: " + step, text);
+  report.facts.emplace_back("Scene", rendering.scene.empty() ? "built-in" : rendering.scene);
+  report.facts.emplace_back("Content in view", std::to_string(result.with_content) + " of " +
+                                                   std::to_string(result.frames) + " frames");
+  report.warnings = result.warnings;
+  const std::filesystem::path folder(output);
+  for (const char* file : {"augmented.mp4", "scene.glb", "planes.json"}) {
+    if (std::filesystem::exists(folder / file)) report.links.emplace_back(file);
   }
-  page.warnings = result.warnings;
-  if (!result.video.empty()) page.links.push_back("augmented.mp4");
-  page.links.push_back("scene.glb");
-  return page;
+  engine::write_report(reconstruction, report, folder / "report.html");
 }
 
 int RunCommand::run() const {
@@ -79,8 +78,7 @@ int RunCommand::run() const {
     console.warning(error.what());
     result = render_with_progress(*sequence, reconstruction, engine::SceneFile{}, options, output, console);
   }
-  engine::write_report(reconstruction, report_input(*sequence, result),
-                       std::filesystem::path(output) / "report.html");
+  write_report(reconstruction, result, *sequence);
   report_rendering(result, output, console);
   if (tracked.poor) console.warning("tracking was lost for more than half of the frames");
   return tracked.poor || !result.unreadable.empty() ? kPoorResult : kDone;
