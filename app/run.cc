@@ -49,6 +49,10 @@ void RunCommand::write_report(const engine::Reconstruction& reconstruction,
   for (const auto& [frame, picture] : result.stills) {
     report.stills.push_back({"frame " + std::to_string(frame), picture});
   }
+  report.facts.emplace_back("Scene", rendering.scene.empty() ? "built-in" : rendering.scene);
+  report.facts.emplace_back("Content in view", std::to_string(result.with_content) + " of " +
+                                                   std::to_string(result.frames) + " frames");
+  report.warnings = result.warnings;
   const std::filesystem::path folder(output);
   for (const char* file : {"augmented.mp4", "scene.glb", "planes.json"}) {
     if (std::filesystem::exists(folder / file)) report.links.emplace_back(file);
