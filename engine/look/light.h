@@ -27,7 +27,7 @@ struct SceneLight {
 struct LightOptions {
   double mean_albedo = 0.35;   ///< of the surfaces of a room; turns what is seen into what shines on it
   double neutral_share = 0.5;  ///< how far the light's colour is drawn from the scene's towards grey
-  double sun_share = 0.3;      ///< of the light on a surface that faces up
+  double sun_share = 0.45;     ///< of the light on a surface that faces up
   double up_gradient = 0.25;   ///< light from above over light from below, when nothing is known
   double min_brightness = 0.15;  ///< bounds of the light on a facing white surface
   double max_brightness = 1.6;

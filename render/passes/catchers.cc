@@ -12,8 +12,7 @@ namespace planecast::render {
 namespace {
 
 constexpr int kMaskSide = 160;
-constexpr int kHeightsSide = 128;
-constexpr int kContactSide = 96;
+constexpr int kContactSide = 144;
 constexpr int kPenumbraSide = 512;
 /// How far a contact shadow reaches, in heights of the object: there a wall hides 1 / (1 + 1.5^2) of a
 /// direction's light, a column much less, and the rest fades out.
@@ -53,6 +52,14 @@ Silhouette silhouette_of(const std::vector<glm::vec3>& points, const PlaneFrame&
     found.underside = std::min(found.underside, height);
   }
   return found;
+}
+
+/// Objects far off a plane, measured in their own width, leave hardly a trace on it: faded out, so that
+/// it need not be computed.
+float contact_strength(float lift) {
+  constexpr float kFull = 0.25F;
+  constexpr float kNone = 0.5F;
+  return std::clamp((kNone - lift) / (kNone - kFull), 0.0F, 1.0F);
 }
 
 /// Where the sun's shadow of the points can fall.
@@ -121,7 +128,8 @@ CatcherPass::CatcherPass(const Gl& gl, const ModelPasses& models)
       models_(&models),
       no_vertices_(gl),
       framebuffer_(gl),
-      heights_(make_target(gl, GL_RG32F, kHeightsSide, kHeightsSide)) {}
+      heights_(make_target(gl, GL_RG32F, kContactSide, kContactSide)),
+      unblurred_contact_(make_target(gl, GL_R32F, kContactSide, kContactSide)) {}
 
 void CatcherPass::prepare(ShaderLibrary& shaders, const CatcherInput& input) {
   prepared_.clear();
@@ -157,7 +165,8 @@ void CatcherPass::prepare_patch(ShaderLibrary& shaders, const CatcherInput& inpu
   const glm::vec2 width = casters.footprint.size();
   const float reach = kContactReach * casters.top;
   PlaneRegion contact = nothing();
-  if (ambient > 0.0F && casters.underside < std::max(width.x, width.y)) {
+  prepared.contact_strength = contact_strength(casters.underside / std::max(width.x, width.y));
+  if (ambient > 0.0F && prepared.contact_strength > 0.0F) {
     contact = {casters.footprint.min - reach, casters.footprint.max + reach};
   }
   PlaneRegion touched = contact;
@@ -230,7 +239,7 @@ void CatcherPass::make_penumbra(ShaderLibrary& shaders, const CatcherInput& inpu
 void CatcherPass::make_contact(ShaderLibrary& shaders, const CatcherInput& input,
                                const PlaneFrame& frame, const PlaneRegion& region, float reach_m,
                                Maps& maps) {
-  begin_map(heights_.id(), kHeightsSide);
+  begin_map(heights_.id(), kContactSide);
   constexpr std::array<float, 4> kNothingThere = {-1e9F, -1e9F, 0.0F, 0.0F};
   gl_->ClearNamedFramebufferfv(framebuffer_.id(), GL_COLOR, 0, kNothingThere.data());
   gl_->Enable(GL_BLEND);
@@ -244,13 +253,20 @@ void CatcherPass::make_contact(ShaderLibrary& shaders, const CatcherInput& input
     set_filter(*gl_, maps.contact, GL_LINEAR);
   }
   const Program& program = shaders.get("full_screen.vert", "contact.frag");
-  begin_map(maps.contact.id(), kContactSide);
+  begin_map(unblurred_contact_.id(), kContactSide);
   program.use();
   gl_->BindTextureUnit(kUnitHeights, heights_.id());
   program.set("u_heights", static_cast<int>(kUnitHeights));
   program.set("u_region_size_m", region.size());
   program.set("u_reach_m", reach_m);
   gl_->BindVertexArray(no_vertices_.id());
+  gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+
+  const Program& blur = shaders.get("full_screen.vert", "contact_blur.frag");
+  begin_map(maps.contact.id(), kContactSide);
+  blur.use();
+  gl_->BindTextureUnit(kUnitHeights, unblurred_contact_.id());
+  blur.set("u_heights", static_cast<int>(kUnitHeights));
   gl_->DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
@@ -298,6 +314,7 @@ void CatcherPass::draw(ShaderLibrary& shaders, const CatcherInput& input, GLuint
     if (!prepared.contact_region.empty()) {
       gl_->BindTextureUnit(kUnitContact, prepared.maps->contact.id());
       program.set("u_contact", static_cast<int>(kUnitContact));
+      program.set("u_contact_strength", prepared.contact_strength);
       program.set("u_contact_min", prepared.contact_region.min);
       program.set("u_contact_max", prepared.contact_region.max);
     }

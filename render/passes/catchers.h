@@ -60,6 +60,7 @@ class CatcherPass {
     bool sun = false;
     float farthest_gap_m = 0.0F;
     float sun_share = 0.0F;
+    float contact_strength = 0.0F;
     float edge_softness_m = 0.0F;
   };
 
@@ -76,6 +77,7 @@ class CatcherPass {
   VertexArrayHandle no_vertices_;
   FramebufferHandle framebuffer_;
   TextureHandle heights_;
+  TextureHandle unblurred_contact_;
   std::map<std::uint64_t, Mask> masks_;
   std::map<std::size_t, Maps> maps_;  ///< by the patch's place in the scene
   std::size_t patch_index_ = 0;

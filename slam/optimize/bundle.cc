@@ -11,6 +11,12 @@ namespace {
 
 /// Iterations of the local bundle's first, robust pass, [K].
 constexpr int kRobustIterations = 5;
+/// Where the local bundle's passes end. The first has only to tell outliers; for the second, 1e-4
+/// of the cost is far less than one standard deviation of any pose, and the next keyframe goes on
+/// from it.
+constexpr double kLocalRobustTolerance = 1e-3;
+constexpr double kLocalTolerance = 1e-4;
+constexpr double kGlobalTolerance = 1e-5;
 
 int first_keyframe(const Map& map) {
   return map.keyframes.empty() ? kNone : (*map.keyframes.begin()).id;
@@ -45,6 +51,8 @@ ScaleGauge find_scale_gauge(const BundleProblem& problem) {
 struct Schedule {
   int robust_iterations = 0;
   int iterations = 0;
+  double robust_tolerance = kGlobalTolerance;
+  double tolerance = kGlobalTolerance;
   bool refine_focal = false;
 };
 
@@ -64,10 +72,12 @@ BundleResult run_bundle(BundleProblem& problem, const Schedule& schedule, Map& m
   BundleSolve solve;
   solve.refine_focal = schedule.refine_focal;
   solve.iterations = schedule.robust_iterations;
+  solve.function_tolerance = schedule.robust_tolerance;
   result.iterations = solve_bundle(problem, solve);
   deactivate_outliers(problem);
   solve.robust = false;
   solve.iterations = schedule.iterations;
+  solve.function_tolerance = schedule.tolerance;
   result.iterations += solve_bundle(problem, solve);
   deactivate_outliers(problem);
   if (gauge.other != kNone) restore_distance(problem, gauge.anchor, gauge.other, gauge.distance);
@@ -139,6 +149,7 @@ BundleResult local_bundle(Map& map, const Camera& camera, KeyframeId centre,
   keyframes.insert(keyframes.end(), window.begin(), window.end());
   std::sort(keyframes.begin(), keyframes.end());
   std::vector<char> fixed;
+  fixed.reserve(keyframes.size());
   for (const KeyframeId id : keyframes) {
     fixed.push_back(id == first_keyframe(map) ||
                     !std::binary_search(window.begin(), window.end(), id));
@@ -146,15 +157,23 @@ BundleResult local_bundle(Map& map, const Camera& camera, KeyframeId centre,
   // Without any outer observer nothing else holds the window in its place.
   if (std::find(fixed.begin(), fixed.end(), 1) == fixed.end()) fixed.front() = 1;
   BundleProblem problem = collect_bundle(map, camera, keyframes, fixed, landmarks, options);
-  return run_bundle(problem, {kRobustIterations, options.iterations, false}, map);
+  Schedule schedule;
+  schedule.robust_iterations = kRobustIterations;
+  schedule.iterations = options.iterations;
+  schedule.robust_tolerance = kLocalRobustTolerance;
+  schedule.tolerance = kLocalTolerance;
+  return run_bundle(problem, schedule, map);
 }
 
 BundleResult global_bundle(Map& map, Camera& camera, const BundleOptions& options) {
   if (map.keyframes.empty()) return {};
   BundleProblem problem = collect_whole_map(map, camera, options);
+  Schedule schedule;
   // The start may be far off, as after a loop: outliers are told only once it has settled.
-  const BundleResult result =
-      run_bundle(problem, {options.iterations, options.iterations, options.refine_focal}, map);
+  schedule.robust_iterations = options.iterations;
+  schedule.iterations = options.iterations;
+  schedule.refine_focal = options.refine_focal;
+  const BundleResult result = run_bundle(problem, schedule, map);
   camera.fx *= result.focal_factor;
   camera.fy *= result.focal_factor;
   return result;

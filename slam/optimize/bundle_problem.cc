@@ -12,7 +12,6 @@ namespace {
 
 /// Above this number of free keyframes the reduced system is sparse enough for a sparse solver.
 constexpr int kMaxDenseKeyframes = 120;
-constexpr double kFunctionTolerance = 1e-5;
 constexpr double kMinDistance = 1e-9;
 
 std::vector<int> index_by_id(const std::vector<KeyframeId>& keyframes, int next_id) {
@@ -34,10 +33,10 @@ std::unique_ptr<ceres::CostFunction> make_cost(const ReprojectionTerm& term, boo
   return std::make_unique<ReprojectionCost<2>>(term);
 }
 
-ceres::Solver::Options solver_options(int iterations, int free_keyframes) {
+ceres::Solver::Options solver_options(const BundleSolve& solve, int free_keyframes) {
   ceres::Solver::Options options;
-  options.max_num_iterations = iterations;
-  options.function_tolerance = kFunctionTolerance;
+  options.max_num_iterations = solve.iterations;
+  options.function_tolerance = solve.function_tolerance;
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;
   options.linear_solver_type =
@@ -71,10 +70,12 @@ BundleProblem collect_bundle(const Map& map, const Camera& camera,
   problem.fixed = fixed;
   problem.chi2_mono = options.chi2_mono;
   problem.chi2_depth = options.chi2_depth;
+  problem.poses.reserve(keyframes.size());
   for (const KeyframeId id : keyframes) {
     problem.poses.push_back(block_from_pose(map.keyframes.at(id).cam_from_world));
   }
   std::vector<double> sigma_px;
+  sigma_px.reserve(static_cast<std::size_t>(options.levels.levels));
   for (int octave = 0; octave < options.levels.levels; ++octave) {
     sigma_px.push_back(options.levels.sigma_px(octave));
   }
@@ -152,8 +153,7 @@ int solve_bundle(BundleProblem& problem, const BundleSolve& solve) {
   }
   if (costs.empty()) return 0;
   const auto free_keyframes = std::count(problem.fixed.begin(), problem.fixed.end(), 0);
-  ceres::Solver::Options options =
-      solver_options(solve.iterations, static_cast<int>(free_keyframes));
+  ceres::Solver::Options options = solver_options(solve, static_cast<int>(free_keyframes));
   ceres::ParameterBlockOrdering& ordering = *options.linear_solver_ordering;
   for (std::size_t i = 0; i < problem.points.size(); ++i) {
     if (point_used[i]) ordering.AddElementToGroup(problem.points[i].data(), kPointGroup);
