@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <numeric>
 
-#include "slam/fitting/random.h"
+#include "slam/geometry/random.h"
 #include "slam/stages/plane_steps.h"
 
 namespace planecast::slam {
