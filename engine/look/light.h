@@ -27,6 +27,7 @@ struct SceneLight {
 struct LightOptions {
   double mean_albedo =
       0.35;  ///< of the surfaces of a room; turns what is seen into what shines on it
+  double bright_albedo = 0.7;  ///< of its brightest tenth: paper, walls; the second opinion
   double neutral_share =
       0.5;                    ///< how far the light's colour is drawn from the scene's towards grey
   double sun_share = 0.45;    ///< of the light on a surface that faces up
@@ -36,10 +37,10 @@ struct LightOptions {
 };
 
 /// Gathers pictures of known poses and estimates one light for the whole sequence. What is seen is
-/// reflected light: over the mean albedo it tells the brightness and, half trusted, the colour;
-/// whether one side of the room is brighter tells from which side the main light comes, from above
-/// by default. An honest guess for diffuse rooms, not a measurement: one picture of a room does not
-/// hold more.
+/// reflected light: over the albedo of rooms it tells the brightness (the mean of what the mean
+/// surface and the brightest tenth say) and, half trusted, the colour; whether one side of the room
+/// is brighter tells from which side the main light comes, from above by default. An honest guess
+/// for diffuse rooms, not a measurement: one picture of a room does not hold more.
 class LightEstimator {
  public:
   explicit LightEstimator(const LightOptions& options = {}) : options_(options) {}
@@ -54,7 +55,9 @@ class LightEstimator {
     Eigen::Vector3d direction;  ///< world, unit
     Eigen::Vector3d radiance;   ///< linear RGB
   };
+  double quantile(double share) const;  ///< of luminance
   Eigen::Vector3d robust_mean() const;
+  double brightness() const;
   Eigen::Vector3d side_gradient(const Eigen::Vector3d& up) const;
 
   LightOptions options_;

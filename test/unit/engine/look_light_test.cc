@@ -27,11 +27,13 @@ SceneLight estimate_from(const cv::Mat& image) {
   return estimator.estimate(kUp);
 }
 
-TEST(Light, UniformPictureGivesItsBrightnessOverTheAlbedo) {
+TEST(Light, UniformPictureGivesItsBrightnessOverTheAlbedos) {
   const cv::Mat grey(480, 640, CV_8UC3, cv::Scalar(128, 128, 128));
   const SceneLight light = estimate_from(grey);
   const Eigen::Vector3d facing_up = on_surface(light, kUp);
-  const double expected = srgb_to_linear(128) / LightOptions{}.mean_albedo;
+  const LightOptions options;
+  const double expected =
+      srgb_to_linear(128) * 0.5 * (1.0 / options.mean_albedo + 1.0 / options.bright_albedo);
   for (int channel = 0; channel < 3; ++channel)
     EXPECT_NEAR(facing_up[channel], expected, 0.05 * expected);
   // Light comes from above, to the upper left by custom.
