@@ -9,6 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
 
+#include "engine/assets.h"
 #include "engine/convert.h"
 #include "engine/sequence/camera_file.h"
 #include "engine/sequence/synth/camera_effects.h"
@@ -150,7 +151,8 @@ class Generator {
  private:
   static render::RendererOptions renderer_options(const SynthOptions& options) {
     render::RendererOptions renderer;
-    renderer.shader_dir = options.shader_dir;
+    renderer.shader_dir =
+        options.shader_dir.empty() ? asset("shaders").string() : options.shader_dir;
     return renderer;
   }
   /// Small pictures need no large textures.

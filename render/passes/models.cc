@@ -2,6 +2,7 @@
 
 #include "render/gl/image_texture.h"
 #include "render/gltf/animate.h"
+#include "render/passes/content_hash.h"
 #include "render/passes/view.h"
 
 namespace planecast::render {
@@ -16,6 +17,10 @@ Box shape_box(const std::vector<ShapeVertex>& shape) {
   return box;
 }
 
+/// Anisotropic reads cost a software rasteriser more than all of the shading; only colours, where blur
+/// is seen, get them.
+constexpr float kColorAnisotropy = 4.0F;
+
 }  // namespace
 
 void DrawItem::draw(const Gl& gl) const {
@@ -27,9 +32,16 @@ const std::vector<DrawItem>& ModelSet::pose(const std::vector<Instance>& instanc
   std::erase_if(models_, [](const auto& item) { return item.second.model.expired(); });
   items_.clear();
   deformed_used_ = 0;
+  ContentHash signature;
   for (const Instance& instance : instances) {
-    if (instance.model != nullptr) add_instance(instance);
+    if (instance.model == nullptr) continue;
+    signature.add(upload(instance.model).serial);
+    signature.add(instance.world_from_model);
+    signature.add(instance.animation);
+    signature.add(instance.animation_time_s);
+    add_instance(instance);
   }
+  signature_ = signature.value();
   return items_;
 }
 
@@ -38,6 +50,7 @@ GpuModel& ModelSet::upload(const std::shared_ptr<const Model>& model) {
   GpuModel& gpu = place->second;
   if (!is_new) return gpu;
   gpu.model = model;
+  gpu.serial = ++uploads_;
   for (const Mesh& mesh : model->meshes) {
     auto& primitives = gpu.meshes.emplace_back();
     for (const Primitive& primitive : mesh.primitives) {
@@ -105,7 +118,7 @@ GLuint ModelSet::texture(const DrawItem& item, const TextureSlot& slot, bool srg
   if (known != item.gpu->textures.end()) return known->second.id();
   const ModelTexture& texture = item.model->textures[static_cast<std::size_t>(slot.texture)];
   const TextureOptions options{srgb, texture.wrap_s, texture.wrap_t, texture.min_filter,
-                               texture.mag_filter};
+                               texture.mag_filter, srgb ? kColorAnisotropy : 1.0F};
   TextureHandle handle =
       upload_image(*gl_, item.model->images[static_cast<std::size_t>(texture.image)], options);
   const GLuint id = handle.id();

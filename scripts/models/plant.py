@@ -1,4 +1,4 @@
-"""A Pilea in a terracotta pot with saucer, about 0.23 m tall; every leaf is real geometry."""
+"""A Pilea in a terracotta pot with saucer, about 0.22 m tall; every leaf is real geometry."""
 
 import math
 

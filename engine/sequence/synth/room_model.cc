@@ -42,8 +42,8 @@ Patch curved_patch(int cols, int rows, const std::vector<Vector3d>& points,
   for (const Vector3d& point : points) patch.positions.push_back(point.cast<float>());
   for (const Vector3d& normal : normals) patch.normals.push_back(normal.cast<float>());
   patch.texture = std::move(texture);
-  patch.light_texel_m = 0.012F;
-  patch.texels_per_m = 900.0F;
+  patch.light_texel_m = 0.02F;
+  patch.texels_per_m = 700.0F;
   return patch;
 }
 
@@ -141,12 +141,12 @@ void add_revolution(RoomModel& model, const Place& place, const std::vector<Prof
 
 void add_ball(RoomModel& model, const Vector3d& centre, double radius, Texture texture) {
   std::vector<ProfilePoint> profile;
-  constexpr int kRings = 12;
-  for (int i = 0; i <= kRings; ++i) {
-    const double angle = std::numbers::pi * (static_cast<double>(i) / kRings - 0.5);
+  const int rings = radius < 0.02 ? 5 : 10;
+  for (int i = 0; i <= rings; ++i) {
+    const double angle = std::numbers::pi * (static_cast<double>(i) / rings - 0.5);
     profile.push_back({radius * std::cos(angle), radius * std::sin(angle)});
   }
-  add_revolution(model, {centre, 0.0}, profile, std::move(texture), 20);
+  add_revolution(model, {centre, 0.0}, profile, std::move(texture), radius < 0.02 ? 8 : 20);
 }
 
 void add_tube(RoomModel& model, const std::vector<Vector3d>& path, double radius, Texture texture,

@@ -71,7 +71,8 @@ ShellOptions living_room(std::uint64_t seed) {
   shell.floor = parquet(WoodKind::kOak, s);
   shell.walls = {plaster(paint(0xEFEAE0), s + 1), plaster(paint(0xEFEAE0), s + 2),
                  plaster(paint(0x8FA6A3), s + 3), plaster(paint(0xEFEAE0), s + 4)};
-  shell.wall_texels_per_m = {450, 250, 450, 250};
+  shell.wall_texels_per_m = {420, 220, 420, 220};
+  shell.floor_texels_per_m = 380;
   return shell;
 }
 
