@@ -15,8 +15,8 @@ constexpr double kMaskShare = 0.5;
 constexpr int kMinMaskVotes = 3;
 /// Support within linking distance that a point needs to join.
 constexpr int kMinNeighbours = 2;
-/// Of kCoherenceNeighbours, that the plane must explain for a point to join where there are no masks: more for
-/// a plane that has yet to prove itself.
+/// Of kCoherenceNeighbours, that the plane must explain for a point to join where there are no
+/// masks: more for a plane that has yet to prove itself.
 constexpr int kMinExplainedByLarge = 1;
 constexpr int kLargeSupport = 100;
 constexpr int kMinExplained = 3;
