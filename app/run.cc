@@ -23,12 +23,17 @@ struct RunCommand {
 
  private:
   engine::Reconstruction reconstruct(engine::Sequence& sequence, const Console& console) const;
+  void write_report(const engine::Reconstruction& reconstruction,
+                    const engine::RenderSequenceResult& result,
+                    const engine::Sequence& sequence) const;
 };
 
 /// Tracks, or, to resume, takes what an earlier run has completed.
-engine::Reconstruction RunCommand::reconstruct(engine::Sequence& sequence, const Console& console) const {
+engine::Reconstruction RunCommand::reconstruct(engine::Sequence& sequence,
+                                               const Console& console) const {
   std::error_code ignored;
-  if (rendering.resume && std::filesystem::exists(std::filesystem::path(output) / "map.bin", ignored)) {
+  if (rendering.resume &&
+      std::filesystem::exists(std::filesystem::path(output) / "map.bin", ignored)) {
     console.info("resuming with the reconstruction in " + output);
     return engine::read_reconstruction(output);
   }
@@ -36,6 +41,25 @@ engine::Reconstruction RunCommand::reconstruct(engine::Sequence& sequence, const
       track_with_progress(sequence, tracking.resolve(common, input), console);
   engine::write_reconstruction(reconstruction, output);
   return reconstruction;
+}
+
+void RunCommand::write_report(const engine::Reconstruction& reconstruction,
+                              const engine::RenderSequenceResult& result,
+                              const engine::Sequence& sequence) const {
+  engine::ReportInput report;
+  report.title = sequence.name();
+  for (const auto& [frame, picture] : result.stills) {
+    report.stills.push_back({"frame " + std::to_string(frame), picture});
+  }
+  report.facts.emplace_back("Scene", rendering.scene.empty() ? "built-in" : rendering.scene);
+  report.facts.emplace_back("Content in view", std::to_string(result.with_content) + " of " +
+                                                   std::to_string(result.frames) + " frames");
+  report.warnings = result.warnings;
+  const std::filesystem::path folder(output);
+  for (const char* file : {"augmented.mp4", "scene.glb", "planes.json"}) {
+    if (std::filesystem::exists(folder / file)) report.links.emplace_back(file);
+  }
+  engine::write_report(reconstruction, report, folder / "report.html");
 }
 
 int RunCommand::run() const {
@@ -54,9 +78,10 @@ int RunCommand::run() const {
     // Where tracking failed the content has no place: that is a poor result, not a bad scene.
     if (!tracked.poor) throw;
     console.warning(error.what());
-    result = render_with_progress(*sequence, reconstruction, engine::SceneFile{}, options, output, console);
+    result = render_with_progress(*sequence, reconstruction, engine::SceneFile{}, options, output,
+                                  console);
   }
-  engine::write_report(reconstruction, result.stills, std::filesystem::path(output) / "report.html");
+  write_report(reconstruction, result, *sequence);
   report_rendering(result, output, console);
   if (tracked.poor) console.warning("tracking was lost for more than half of the frames");
   return tracked.poor || !result.unreadable.empty() ? kPoorResult : kDone;

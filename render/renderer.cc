@@ -1,6 +1,7 @@
 #include "render/renderer.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -26,6 +27,8 @@ constexpr float kCatcherTolerance = 2.5F;
 constexpr int kBoundsMargin = 2;
 
 std::unique_ptr<GlContext> create_current_context(const RendererOptions& options) {
+  // Read once by Mesa when it finds out about the processor; a setting from outside wins.
+  if (options.portable_floats) setenv("GALLIUM_OVERRIDE_CPU_CAPS", "sse4.1", 0);
   auto context = create_context(options.context);
   context->make_current();
   return context;
@@ -45,14 +48,9 @@ bool casts(const Sun& sun) { return sun.casts_shadow && sun.radiance != glm::vec
 float shadow_margin_texels(const Sun& sun) { return 3.0F + 2.0F * sun.softness; }
 
 /// What the shadows of a frame depend on, except the planes they fall on.
-std::uint64_t caster_signature(const std::vector<Instance>& instances, const Sun& sun) {
+std::uint64_t caster_signature(const ModelSet& models, const Sun& sun) {
   ContentHash hash;
-  for (const Instance& instance : instances) {
-    hash.add(instance.model.get());
-    hash.add(instance.world_from_model);
-    hash.add(instance.animation);
-    hash.add(instance.animation_time_s);
-  }
+  hash.add(models.signature());
   hash.add(sun.direction_to_light);
   hash.add(sun.softness);
   hash.add(casts(sun));
@@ -93,13 +91,14 @@ struct Renderer::Impl {
   }
 
   Layer draw_layer(const LayerScene& scene, const Camera& camera);
-  void draw_layer_color(const LayerScene& scene, const Camera& camera,
-                        const CatcherInput& catching, const ShadingInput& shading, Layer& layer);
+  void draw_layer_color(const LayerScene& scene, const Camera& camera, const CatcherInput& catching,
+                        const ShadingInput& shading, Layer& layer);
   OpaqueImages draw_opaque(const OpaqueScene& scene, const Camera& camera);
   void draw_shadow_map(const ShadowProjection& projection, const std::vector<DrawItem>& items,
                        const Sun& sun, bool with_surfaces, std::uint64_t signature);
   GLuint upload_occluder_depth(const LayerScene& scene, const Camera& camera);
   void begin_opaque_state() const;
+  void check_errors() const;
 
   RendererOptions options;
   std::unique_ptr<GlContext> context;
@@ -123,6 +122,11 @@ void Renderer::Impl::begin_opaque_state() const {
   gl.DepthMask(GL_TRUE);
   gl.Disable(GL_CULL_FACE);
   gl.Disable(GL_BLEND);
+}
+
+void Renderer::Impl::check_errors() const {
+  const GLenum error = gl.GetError();
+  if (error != GL_NO_ERROR) throw std::runtime_error("OpenGL error " + std::to_string(error));
 }
 
 void Renderer::Impl::draw_shadow_map(const ShadowProjection& projection,
@@ -162,12 +166,12 @@ Layer Renderer::Impl::draw_layer(const LayerScene& scene, const Camera& camera) 
 
   const std::vector<glm::vec3> points = world_box_points(items);
   const Sun& sun = scene.light.sun;
-  const std::uint64_t signature = caster_signature(scene.instances, sun);
+  const std::uint64_t signature = caster_signature(models, sun);
   const ShadowMap* shadow = nullptr;
   if (casts(sun)) {
-    draw_shadow_map(fit_shadow(sun.direction_to_light, points, shadow_map.size(),
-                               shadow_margin_texels(sun)),
-                    items, sun, false, signature);
+    draw_shadow_map(
+        fit_shadow(sun.direction_to_light, points, shadow_map.size(), shadow_margin_texels(sun)),
+        items, sun, false, signature);
     shadow = &shadow_map;
   }
   const CatcherInput catching{&scene, &camera, &items, &points, shadow, signature};
@@ -200,6 +204,7 @@ Layer Renderer::Impl::draw_layer(const LayerScene& scene, const Camera& camera) 
   begin_opaque_state();
   model_passes.draw_geometry(items, shading);
   geometry->read_depth(layer.bounds, layer.depth);
+  check_errors();
   return layer;
 }
 
@@ -226,11 +231,11 @@ OpaqueImages Renderer::Impl::draw_opaque(const OpaqueScene& scene, const Camera&
     std::vector<glm::vec3> points = world_box_points(items);
     points.insert(points.end(), surfaces.box_points().begin(), surfaces.box_points().end());
     ContentHash signature;
-    signature.add(caster_signature(scene.instances, sun));
+    signature.add(caster_signature(models, sun));
     signature.add(surfaces.signature());
-    draw_shadow_map(fit_shadow(sun.direction_to_light, points, shadow_map.size(),
-                               shadow_margin_texels(sun)),
-                    items, sun, true, signature.value());
+    draw_shadow_map(
+        fit_shadow(sun.direction_to_light, points, shadow_map.size(), shadow_margin_texels(sun)),
+        items, sun, true, signature.value());
     shadow = &shadow_map;
   }
 
@@ -257,6 +262,7 @@ OpaqueImages Renderer::Impl::draw_opaque(const OpaqueScene& scene, const Camera&
   model_passes.draw_geometry(items, shading);
   geometry->read_depth(whole, images.depth);
   geometry->read_labels(whole, images.labels);
+  check_errors();
   return images;
 }
 

@@ -171,7 +171,8 @@ std::optional<OverlayResult> evaluate_overlay(const Reconstruction& estimate,
   DriftCollector aligned(views);
   DriftCollector tapped(views);
   for (const TruePlaneRow& row : matches->rows) {
-    if (!row.matched) continue;
+    // A scale of 0 (a truth that never moves) cannot be undone.
+    if (!row.matched || !(matches->trajectory.truth_from_estimate.scale > 0.0)) continue;
     const PlaneRecord* true_plane = plane_of(truth, row.truth_id);
     const PlaneRecord* plane = plane_of(estimate.planes, row.estimate_id);
     ++result.planes;
@@ -181,7 +182,6 @@ std::optional<OverlayResult> evaluate_overlay(const Reconstruction& estimate,
       tapped.add(errors_of(point, point.tapped, views, true_camera, estimate.camera));
     }
   }
-  if (result.planes == 0) return std::nullopt;
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (aligned.count(i) == 0) continue;
     ++result.frames;
@@ -202,6 +202,7 @@ std::string format_table(const OverlayResult& result) {
                        figures.drift_px.rms, figures.drift_px.p95, figures.drift_px.max,
                        figures.jitter_px.rms, figures.jitter_px.p95);
   };
+  if (result.planes == 0) return "no plane of the estimate matches a true one\n";
   return text + row("aligned", result.aligned) + row("tapped", result.tapped);
 }
 

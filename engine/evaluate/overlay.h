@@ -35,7 +35,7 @@ struct FrameDrift {
 /// there, and from then on what a viewer sees slide. Independent of the alignment and of the map's
 /// scale.
 struct OverlayResult {
-  int planes = 0;  ///< matched planes that carried a grid
+  int planes = 0;  ///< matched, each carrying a grid
   int frames = 0;  ///< in which any grid point was visible
   DriftFigures aligned;
   DriftFigures tapped;
@@ -44,7 +44,8 @@ struct OverlayResult {
 
 /// A grid point counts in a frame where the truth shows it from the plane's front inside the image
 /// (occlusion is not considered). `true_camera` projects the truth, the reconstruction's own camera
-/// the estimate. Nothing if the trajectories share fewer than 3 poses or no plane matches.
+/// the estimate. Nothing if the trajectories share fewer than 3 poses; no plane that matches gives
+/// planes = 0 and empty figures.
 std::optional<OverlayResult> evaluate_overlay(const Reconstruction& estimate,
                                               const std::vector<PlaneRecord>& truth,
                                               const std::vector<TimedPose>& truth_poses,

@@ -39,19 +39,22 @@ class EarClipper {
     while (loop_.size() > 3) {
       const std::size_t ear = find_ear();
       if (ear == loop_.size()) return triangles;
-      const std::array<int, 3> triangle = corner(ear);
-      if (cross(at(triangle[0]), at(triangle[1]), at(triangle[2])) > 0.0) {
-        triangles.push_back(triangle);
-      }
+      add_if_upright(corner(ear), triangles);
       loop_.erase(loop_.begin() + static_cast<std::ptrdiff_t>(ear));
     }
-    if (loop_.size() == 3) triangles.push_back({loop_[0], loop_[1], loop_[2]});
+    if (loop_.size() == 3) add_if_upright({loop_[0], loop_[1], loop_[2]}, triangles);
     return triangles;
   }
 
  private:
   const Eigen::Vector2d& at(int vertex) const {
     return vertices_[static_cast<std::size_t>(vertex)];
+  }
+
+  void add_if_upright(const std::array<int, 3>& triangle,
+                      std::vector<std::array<int, 3>>& triangles) const {
+    if (cross(at(triangle[0]), at(triangle[1]), at(triangle[2])) > 0.0)
+      triangles.push_back(triangle);
   }
 
   std::array<int, 3> corner(std::size_t i) const {

@@ -31,7 +31,8 @@ std::vector<std::string> lines(const std::string& text) {
   while (begin < text.size()) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     std::string line = text.substr(begin, end - begin);
-    std::replace_if(line.begin(), line.end(), [](char c) { return c == '\r' || c == '\t'; }, ' ');
+    std::replace_if(
+        line.begin(), line.end(), [](char c) { return c == '\r' || c == '\t'; }, ' ');
     if (line.find_first_not_of(' ') != std::string::npos) out.push_back(line);
     begin = end + 1;
   }
@@ -52,6 +53,16 @@ bool load_image(tinygltf::Image* image, const int index, std::string*, std::stri
   return true;
 }
 
+/// The JSON library's messages begin with its own name in brackets.
+std::string reason(const std::string& message) {
+  const auto all = lines(message);
+  if (all.empty()) return "is not a glTF file";
+  const std::string& first = all.front();
+  if (!first.starts_with("[json.exception")) return first;
+  const std::size_t bracket = first.find("] ");
+  return "is not valid JSON: " + (bracket == std::string::npos ? first : first.substr(bracket + 2));
+}
+
 bool is_binary(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) throw ImportError("cannot be opened");
@@ -70,10 +81,7 @@ tinygltf::Model parse(const std::string& path, std::vector<std::string>& warning
   const bool ok = is_binary(path) ? loader.LoadBinaryFromFile(&file, &error, &warning, path)
                                   : loader.LoadASCIIFromFile(&file, &error, &warning, path);
   for (const std::string& line : lines(warning)) warnings.push_back(line);
-  if (!ok) {
-    const auto reasons = lines(error);
-    throw ImportError(reasons.empty() ? "is not a glTF file" : reasons.front());
-  }
+  if (!ok) throw ImportError(reason(error));
   return file;
 }
 
@@ -93,7 +101,8 @@ void check_joints(const Model& model) {
   for (const Node& node : model.nodes) {
     if (node.mesh < 0 || node.skin < 0) continue;
     const std::size_t joints = model.skins[static_cast<std::size_t>(node.skin)].joints.size();
-    for (const Primitive& primitive : model.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
+    for (const Primitive& primitive :
+         model.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
       for (const auto& vertex : primitive.joints) {
         if (*std::max_element(vertex.begin(), vertex.end()) >= joints) {
           throw ImportError("a vertex uses a joint that its skin does not have");
@@ -124,6 +133,13 @@ std::shared_ptr<const Model> convert(const tinygltf::Model& file,
   return model;
 }
 
+bool draws_nothing(const Model& model) {
+  return std::none_of(model.order.begin(), model.order.end(), [&model](int index) {
+    const int mesh = model.nodes[static_cast<std::size_t>(index)].mesh;
+    return mesh >= 0 && !model.meshes[static_cast<std::size_t>(mesh)].primitives.empty();
+  });
+}
+
 void keep_first_of_each(std::vector<std::string>& warnings) {
   std::vector<std::string> unique;
   for (std::string& warning : warnings) {
@@ -142,10 +158,10 @@ ImportResult import_gltf(const std::string& path) {
     const tinygltf::Model file = parse(path, result.warnings);
     check_extensions(file, result.warnings);
     result.model = convert(file, result.warnings);
+    if (draws_nothing(*result.model)) result.warnings.emplace_back("it has nothing to draw");
   } catch (const std::exception& error) {
     // Besides our own, the parser's and std::bad_alloc for sizes that lie.
-    const auto reasons = lines(error.what());
-    result.error = reasons.empty() ? "is not a glTF file" : reasons.front();
+    result.error = reason(error.what());
   }
   keep_first_of_each(result.warnings);
   return result;

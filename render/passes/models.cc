@@ -1,7 +1,10 @@
 #include "render/passes/models.h"
 
+#include <cmath>
+
 #include "render/gl/image_texture.h"
 #include "render/gltf/animate.h"
+#include "render/passes/content_hash.h"
 #include "render/passes/view.h"
 
 namespace planecast::render {
@@ -16,6 +19,16 @@ Box shape_box(const std::vector<ShapeVertex>& shape) {
   return box;
 }
 
+bool finite(const glm::mat4& matrix) {
+  float sum = 0.0F;
+  for (int column = 0; column < 4; ++column) sum += glm::dot(matrix[column], glm::vec4(1.0F));
+  return std::isfinite(sum);
+}
+
+/// Anisotropic reads cost a software rasteriser more than all of the shading; only colours, where
+/// blur is seen, get them.
+constexpr float kColorAnisotropy = 4.0F;
+
 }  // namespace
 
 void DrawItem::draw(const Gl& gl) const {
@@ -24,12 +37,22 @@ void DrawItem::draw(const Gl& gl) const {
 }
 
 const std::vector<DrawItem>& ModelSet::pose(const std::vector<Instance>& instances) {
-  std::erase_if(models_, [](const auto& item) { return item.second.model.expired(); });
+  const auto gone =
+      std::erase_if(models_, [](const auto& item) { return item.second.model.expired(); });
+  // Deformed shapes refer to meshes by address, and a new model may get the address of a gone one.
+  if (gone > 0) deformed_.clear();
   items_.clear();
   deformed_used_ = 0;
+  ContentHash signature;
   for (const Instance& instance : instances) {
-    if (instance.model != nullptr) add_instance(instance);
+    if (instance.model == nullptr || !finite(instance.world_from_model)) continue;
+    signature.add(upload(instance.model).serial);
+    signature.add(instance.world_from_model);
+    signature.add(instance.animation);
+    signature.add(instance.animation_time_s);
+    add_instance(instance);
   }
+  signature_ = signature.value();
   return items_;
 }
 
@@ -38,6 +61,7 @@ GpuModel& ModelSet::upload(const std::shared_ptr<const Model>& model) {
   GpuModel& gpu = place->second;
   if (!is_new) return gpu;
   gpu.model = model;
+  gpu.serial = ++uploads_;
   for (const Mesh& mesh : model->meshes) {
     auto& primitives = gpu.meshes.emplace_back();
     for (const Primitive& primitive : mesh.primitives) {
@@ -104,8 +128,12 @@ GLuint ModelSet::texture(const DrawItem& item, const TextureSlot& slot, bool srg
   const auto known = item.gpu->textures.find({slot.texture, srgb});
   if (known != item.gpu->textures.end()) return known->second.id();
   const ModelTexture& texture = item.model->textures[static_cast<std::size_t>(slot.texture)];
-  const TextureOptions options{srgb, texture.wrap_s, texture.wrap_t, texture.min_filter,
-                               texture.mag_filter};
+  const TextureOptions options{srgb,
+                               texture.wrap_s,
+                               texture.wrap_t,
+                               texture.min_filter,
+                               texture.mag_filter,
+                               srgb ? kColorAnisotropy : 1.0F};
   TextureHandle handle =
       upload_image(*gl_, item.model->images[static_cast<std::size_t>(texture.image)], options);
   const GLuint id = handle.id();

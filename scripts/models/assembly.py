@@ -41,11 +41,8 @@ class Assembly:
                 loop[self.atlas].uv = (uv[0] * density, uv[1] * density)
                 loop[self.decal].uv = decal
 
-    def finish(self, pack=True):
+    def finish(self):
         """The whole model as one object: triangles, weighted normals, packed atlas."""
-        if not pack:
-            self._triangulate()
-            return self._object()
         obj = self._object()
         bpy.context.view_layer.objects.active = obj
         bpy.ops.object.mode_set(mode="EDIT")

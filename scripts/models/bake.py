@@ -39,10 +39,10 @@ def bake(obj, recipes, size, folder, occlusion_m, samples=16):
 
     for recipe in recipes:
         _emit(recipe, recipe.colour)
-    write("base", _run(obj, recipes, size, "EMIT", samples), True, 88)
+    write("base", _run(obj, recipes, size, "EMIT", samples), True, 86)
     for recipe in recipes:
         _emit(recipe, _orm(recipe, occlusion_m))
-    write("orm", _run(obj, recipes, size, "EMIT", 3 * samples), False, 76)
+    write("orm", _run(obj, recipes, size, "EMIT", 3 * samples), False, 70)
     for recipe in recipes:
         _relief(recipe)
     write("normal", _run(obj, recipes, size, "NORMAL", samples), False, 92)

@@ -1,4 +1,4 @@
-"""A framed print for a wall, 0.40 x 0.50 m: oak frame, mount with a bevelled window, screen print."""
+"""A framed print for a wall, 0.40 x 0.50 m: oak frame, mount with a window, print in flat inks."""
 
 import math
 
@@ -79,7 +79,12 @@ def frame():
         length = WIDTH_M if side % 2 == 0 else HEIGHT_M
         for i in range(len(face) - 1):
             ends = [(inset, length - inset) for inset, _ in (face[i], face[i + 1])]
-            uvs = [(ends[0][0], run[i]), (ends[0][1], run[i]), (ends[1][1], run[i + 1]), (ends[1][0], run[i + 1])]
+            uvs = [
+                (ends[0][0], run[i]),
+                (ends[0][1], run[i]),
+                (ends[1][1], run[i + 1]),
+                (ends[1][0], run[i + 1]),
+            ]
             decals = [(u + 0.7 * side, v + 0.13 * side) for u, v in uvs]
             member.add_face([2 * i, 2 * i + 1, 2 * i + 3, 2 * i + 2], uvs, decals)
         shape.append(member)
@@ -117,7 +122,7 @@ def back():
 
 def build(scratch):
     a = Assembly("poster")
-    # Seen from the front, z off the wall becomes Blender's -y; the back's bottom centre is the origin.
+    # Off the wall (z) becomes Blender's -y; the origin is the bottom centre of the back.
     place = Matrix.Translation((0, 0, HEIGHT_M / 2)) @ Matrix.Rotation(math.pi / 2, 4, "X")
     sight = (WIDTH_M / 2 - MEMBER_M, HEIGHT_M / 2 - MEMBER_M)
     opening = (sight[0] - MOUNT_M, sight[1] - MOUNT_M)
@@ -126,7 +131,12 @@ def build(scratch):
     mount = card("mount", "#efe9dc")
     inner = (opening[0] + bevel, opening[1] + bevel)
     a.add(window(sight, inner, SHEET_DEPTH_M, SHEET_DEPTH_M), mount, place, density=0.8)
-    a.add(window(inner, opening, SHEET_DEPTH_M, SHEET_DEPTH_M - bevel), card("core", "#fbf8f0"), place, density=0.8)
+    a.add(
+        window(inner, opening, SHEET_DEPTH_M, SHEET_DEPTH_M - bevel),
+        card("core", "#fbf8f0"),
+        place,
+        density=0.8,
+    )
     face = sheet(-opening[0], -opening[1], opening[0], opening[1], SHEET_DEPTH_M - bevel)
     a.add(face, print_recipe(), place, density=1.5)
     a.add(back(), card("backing", "#7d6b55"), place, density=0.12)

@@ -22,7 +22,9 @@ def picture(width, height):
     horizon = 0.66 * tall
     image = sky(x, y, horizon)
     sun_at = (0.62, 0.36 * tall)
-    image = drawing.paint(image, SUN, drawing.cover(np.hypot(x - sun_at[0], y - sun_at[1]) - 0.15, soft))
+    image = drawing.paint(
+        image, SUN, drawing.cover(np.hypot(x - sun_at[0], y - sun_at[1]) - 0.15, soft)
+    )
     image = clouds(image, x, y, soft)
     image = ridges(image, x, y, horizon, soft)
     image = lake(image, y, horizon, sun_at, x, soft)
@@ -42,7 +44,12 @@ def sky(x, y, horizon):
 
 
 def clouds(image, x, y, soft):
-    for cx, cy, length in ((0.22, 0.33, 0.20), (0.34, 0.36, 0.16), (0.80, 0.47, 0.22), (0.70, 0.50, 0.12)):
+    for cx, cy, length in (
+        (0.22, 0.33, 0.20),
+        (0.34, 0.36, 0.16),
+        (0.80, 0.47, 0.22),
+        (0.70, 0.50, 0.12),
+    ):
         bar = drawing.box_distance(x, y, cx, cy, length / 2, 0.010, 0.010)
         image = drawing.paint(image, PAPER, 0.85 * drawing.cover(bar, soft))
     return image
@@ -101,7 +108,11 @@ def pines(image, x, y, tall, soft):
         reach = 0.34 - 0.75 * cx if i < 10 else 0.13 + 0.75 * (cx - 0.80)
         size = max(0.09, reach * random.uniform(0.75, 1.1))
         foot = tall * 0.905 - 0.05 * (2 * cx - 0.95) ** 2 + 0.02
-        image = drawing.paint(image, PINES * (0.8 + 0.5 * random.rand()), drawing.cover(pine(x, y, cx, foot, size), soft))
+        image = drawing.paint(
+            image,
+            PINES * (0.8 + 0.5 * random.rand()),
+            drawing.cover(pine(x, y, cx, foot, size), soft),
+        )
     return image
 
 
@@ -118,7 +129,11 @@ def pine(x, y, cx, foot, size):
 def birds(image, x, y, soft):
     for cx, cy, size in ((0.30, 0.20, 0.030), (0.37, 0.235, 0.022), (0.25, 0.25, 0.019)):
         for side in (-1, 1):
-            bend = [(cx, cy), (cx + side * 0.45 * size, cy - 0.42 * size), (cx + side * size, cy - 0.22 * size)]
+            bend = [
+                (cx, cy),
+                (cx + side * 0.45 * size, cy - 0.42 * size),
+                (cx + side * size, cy - 0.22 * size),
+            ]
             for a, b in zip(bend, bend[1:]):
                 line = drawing.segment_distance(x, y, a, b) - 0.0026
                 image = drawing.paint(image, PAPER, drawing.cover(line, soft))
@@ -128,11 +143,16 @@ def birds(image, x, y, soft):
 def margin_and_caption(image, x, y, tall, soft):
     border = 0.035
     foot = 0.115
-    inside = drawing.box_distance(x, y, 0.5, (tall + border - foot) / 2, 0.5 - border, (tall - border - foot) / 2)
+    inside = drawing.box_distance(
+        x, y, 0.5, (tall + border - foot) / 2, 0.5 - border, (tall - border - foot) / 2
+    )
     image = drawing.paint(image, PAPER, drawing.cover(-inside, soft))
     size, pitch = 0.036, 0.072
     left = 0.5 - pitch * (len(CAPTION) - 1) / 2 - 0.35 * size
     for i, letter in enumerate(CAPTION):
-        ink = drawing.letter_distance(x, y, letter, left + i * pitch, tall - foot * 0.68, size) - 0.0034
+        ink = (
+            drawing.letter_distance(x, y, letter, left + i * pitch, tall - foot * 0.68, size)
+            - 0.0034
+        )
         image = drawing.paint(image, drawing.srgb("#1c2f4d"), drawing.cover(ink, soft))
     return image

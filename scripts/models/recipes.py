@@ -9,8 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import bpy
-
-from models import drawing
+import numpy as np
 
 
 @dataclass
@@ -97,12 +96,17 @@ class Graph:
         """A numpy picture (row 0 on top) laid over the decal coordinates."""
         height, width = array.shape[:2]
         image = bpy.data.images.new(name, width, height, float_buffer=True, is_data=True)
-        pixels = drawing.np.ones((height, width, 4), drawing.np.float32)
+        pixels = np.ones((height, width, 4), np.float32)
         pixels[..., :3] = array if array.ndim == 3 else array[..., None]
         image.pixels.foreach_set(pixels[::-1].ravel())
         image.pack()
         uv = self.node("ShaderNodeUVMap", uv_map="decal").outputs["UV"]
-        node = self.node("ShaderNodeTexImage", {"Vector": uv}, image=image, extension="EXTEND")
+        settings = {
+            "image": image,
+            "extension": "EXTEND",
+            "interpolation": "Cubic",
+        }  # smooth slopes
+        node = self.node("ShaderNodeTexImage", {"Vector": uv}, **settings)
         return node.outputs["Color"] if colour else self.separate(node.outputs["Color"])[0]
 
     def recipe(self, colour, roughness=0.5, metallic=0.0, height=None, emission=None):
@@ -112,7 +116,9 @@ class Graph:
 def painted_metal(name, colour, wear=0.5, reach_m=0.012, second=None, split_z=0.0):
     """Enamel over steel, chipped at edges, dusty in crevices. second: colour below split_z."""
     g = Graph(name)
-    base = g.mix(g.ramp(g.noise(0.03), 0.3, 0.7), [0.9 * c for c in colour], [1.06 * c for c in colour])
+    base = g.mix(
+        g.ramp(g.noise(0.03), 0.3, 0.7), [0.9 * c for c in colour], [1.06 * c for c in colour]
+    )
     if second is not None:
         below = g.ramp(g.separate(g.position)["Z"], split_z + 0.0002, split_z - 0.0002)
         base = g.mix(below, base, second)

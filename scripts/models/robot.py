@@ -2,20 +2,11 @@
 
 import math
 
-import numpy as np
 from mathutils import Matrix
 
-from models import bake, drawing, export, robot_motion
+from models import bake, export, robot_materials, robot_motion
 from models.assembly import Assembly
-from models.recipes import Graph, bare_metal, dark_glass, glowing, painted_metal, rubber
 from models.shapes import ball, fillet, hose, loft, rounded_rectangle, shell, tube, turned
-
-TEAL = drawing.srgb("#1f8f93")
-ORANGE = drawing.srgb("#ec6a2c")
-CREAM = drawing.srgb("#f1e3c4")
-EYE_LIGHT = drawing.srgb("#8ff4ff")
-LAMP_LIGHT = drawing.srgb("#ff7a2e")
-HEART_LIGHT = drawing.srgb("#ff3f55")
 
 FRONT = Matrix.Rotation(math.pi / 2, 4, "X")  # a shape's z becomes the robot's front
 BACK = Matrix.Rotation(math.pi, 4, "Z") @ FRONT
@@ -48,49 +39,6 @@ def at(x, y, z, turn=None):
     return Matrix.Translation((x, y, z)) @ (turn or Matrix())
 
 
-def recipes():
-    return {
-        "teal": painted_metal("teal", TEAL, wear=0.42, second=CREAM, split_z=0.083),
-        "blue": painted_metal("blue", TEAL, wear=0.42),
-        "orange": painted_metal("orange", ORANGE, wear=0.36, reach_m=0.006),
-        "cream": painted_metal("cream", CREAM, wear=0.22, reach_m=0.0015),
-        "rubber": rubber("rubber"),
-        "slot": rubber("slot", (0.006, 0.006, 0.007), scuffed=0.0),
-        "steel": bare_metal("steel", (0.62, 0.61, 0.60), (0.28, 0.26, 0.24)),
-        "brass": bare_metal("brass", (0.78, 0.55, 0.22), (0.30, 0.19, 0.08)),
-        "glass": dark_glass("glass", FACE_Z - 0.002, FACE_Z + 0.055),
-        "eye": glowing("eye", EYE_LIGHT),
-        "glint": glowing("glint", (0.95, 1.0, 1.0)),
-        "cheek": glowing("cheek", [0.55 * c for c in HEART_LIGHT]),
-        "lamp": glowing("lamp", LAMP_LIGHT),
-        "heart": glowing("heart", HEART_LIGHT),
-        "dial": dial_recipe(),
-    }
-
-
-def dial_recipe():
-    size = 192
-    x, y = drawing.grid(size, size)
-    x, y = x / size * 2 - 1, y / size * 2 - 1
-    soft = 2.0 / size
-    radius, angle = np.hypot(x, y), np.degrees(np.arctan2(x, -y))
-    image = np.ones((size, size, 3)) * drawing.srgb("#f7efdc")
-    red_zone = drawing.cover(np.abs(radius - 0.72) - 0.07, soft) * (angle > 55) * (angle < 122)
-    image = drawing.paint(image, drawing.srgb("#d8402f"), red_zone)
-    for tick in range(-120, 121, 24):
-        a = math.radians(tick)
-        inner, outer = (0.62, 0.84)
-        ends = [(r * math.sin(a), -r * math.cos(a)) for r in (inner, outer)]
-        distance = drawing.segment_distance(x, y, *ends) - 0.028
-        image = drawing.paint(image, (0.02, 0.02, 0.025), drawing.cover(distance, soft))
-    a = math.radians(38)
-    needle = drawing.segment_distance(x, y, (0, 0), (0.62 * math.sin(a), -0.62 * math.cos(a)))
-    image = drawing.paint(image, drawing.srgb("#c8321f"), drawing.cover(needle - 0.045, soft))
-    image = drawing.paint(image, (0.02, 0.02, 0.025), drawing.cover(radius - 0.13, soft))
-    g = Graph("dial")
-    return g.recipe(g.picture(image, "dial", True), 0.22)
-
-
 def heart_outline(size, steps=28):
     points = []
     for i in range(steps):
@@ -110,24 +58,45 @@ def heart(size):
 def rivet(radius):
     """A low dome round z, open below."""
     angles = [math.radians(d) for d in (-25, 20, 55)]
-    return turned([(radius * math.cos(t), radius * math.sin(t)) for t in angles], 7, "box", (False, True))
+    return turned(
+        [(radius * math.cos(t), radius * math.sin(t)) for t in angles], 7, "box", (False, True)
+    )
 
 
 def build_head(a, r):
     profile = [(-0.036, 0.178), (0, 0.178), (0.001, 0.225), (-0.001, 0.271), (-0.036, 0.271)]
-    head = shell(0.138, 0.104, 0.036, fillet(profile, [0, 0.024, 0, 0.028, 0], 5), caps=(True, True))
+    head = shell(
+        0.138, 0.104, 0.036, fillet(profile, [0, 0.024, 0, 0.028, 0], 5), caps=(True, True)
+    )
     a.add(head, r["blue"], part="head")
-    frame_profile = [(0.005, -0.006), (0.005, 0.0018), (0.0038, 0.003), (0.0008, 0.003), (0, -0.001)]
+    frame_profile = [
+        (0.005, -0.006),
+        (0.005, 0.0018),
+        (0.0038, 0.003),
+        (0.0008, 0.003),
+        (0, -0.001),
+    ]
     frame = shell(0.100, 0.062, 0.027, frame_profile, 7, caps=(False, False))
     a.add(frame, r["cream"], at(0, FACE_Y, FACE_Z, FRONT), "head", 1.3)
-    dome = [(0.001, -0.003), (0, 0), (-0.003, 0.0012), (-0.009, 0.0022), (-0.017, 0.0028), (-0.026, 0.003)]
-    a.add(shell(0.100, 0.062, 0.027, dome, 7), r["glass"], at(0, FACE_Y, FACE_Z, FRONT), "head", 1.3)
+    dome = [
+        (0.001, -0.003),
+        (0, 0),
+        (-0.003, 0.0012),
+        (-0.009, 0.0022),
+        (-0.017, 0.0028),
+        (-0.026, 0.003),
+    ]
+    a.add(
+        shell(0.100, 0.062, 0.027, dome, 7), r["glass"], at(0, FACE_Y, FACE_Z, FRONT), "head", 1.3
+    )
     lens = [(0, -0.002), (0, 0.0006), (-0.0012, 0.0016), (-0.004, 0.0022), (-0.007, 0.0024)]
     for side in (-1, 1):
         eye = shell(0.021, 0.027, 0.0105, lens, 5)
         a.add(eye, r["eye"], at(side * 0.022, FACE_Y - 0.0028, 0.230, FRONT), "eyes", 2)
         glint = turned([(0.0036, -0.002), (0.0034, 0.0004), (0.002, 0.0008)], 14, charts="box")
-        a.add(glint, r["glint"], at(side * 0.022 + 0.0042, FACE_Y - 0.0048, 0.2365, FRONT), "eyes", 2)
+        a.add(
+            glint, r["glint"], at(side * 0.022 + 0.0042, FACE_Y - 0.0048, 0.2365, FRONT), "eyes", 2
+        )
         cheek = turned([(0.0042, -0.002), (0.0042, 0.0003), (0.003, 0.0009)], 20, charts="box")
         a.add(cheek, r["cheek"], at(side * 0.0355, FACE_Y - 0.0022, 0.2105, FRONT), "head", 2)
         build_ear(a, r, side)
@@ -164,7 +133,9 @@ def build_ear(a, r, side):
 
 
 def build_antenna(a, r):
-    base = fillet([(0.014, -0.004), (0.013, 0.002), (0.006, 0.006), (0.004, 0.011)], [0, 0.003, 0.004, 0], 2)
+    base = fillet(
+        [(0.014, -0.004), (0.013, 0.002), (0.006, 0.006), (0.004, 0.011)], [0, 0.003, 0.004, 0], 2
+    )
     x, y, z = PIVOTS["antenna"]
     a.add(turned(base, 16), r["steel"], at(x, y, z), "antenna")
     rod = tube([(0, 0, 0.004), (0, 0, 0.026)], [0.0019, 0.0019], 8)
@@ -176,7 +147,11 @@ def build_body(a, r):
     profile = [(-0.035, 0.058), (-0.003, 0.058), (0.005, 0.112), (0.001, 0.163), (-0.035, 0.165)]
     outline = fillet(profile, [0, 0.014, 0, 0.02, 0], 5)
     a.add(shell(0.112, 0.086, 0.035, outline, caps=(True, True)), r["teal"])
-    rim = fillet([(0.001, 0.0795), (0.0035, 0.0805), (0.0038, 0.0855), (0.0015, 0.0865)], [0, 0.001, 0.001, 0], 2)
+    rim = fillet(
+        [(0.001, 0.0795), (0.0035, 0.0805), (0.0038, 0.0855), (0.0015, 0.0865)],
+        [0, 0.001, 0.001, 0],
+        2,
+    )
     a.add(shell(0.113, 0.087, 0.036, rim, 6, caps=(False, False)), r["steel"])
     plate = fillet([(0, -0.006), (0, 0.0022), (-0.008, 0.0026)], [0, 0.0012, 0], 3)
     a.add(shell(0.078, 0.046, 0.009, plate), r["cream"], at(0, -0.0475, 0.121, FRONT), density=1.4)
@@ -188,7 +163,9 @@ def build_body(a, r):
     outline = rounded_rectangle(0.1125, 0.0865, 0.036, 3)
     for i, (x, y) in enumerate(outline):
         (x0, y0), (x1, y1) = outline[i - 1], outline[(i + 1) % len(outline)]
-        outwards = Matrix.Rotation(math.atan2(x0 - x1, y1 - y0), 4, "Z") @ Matrix.Rotation(math.pi / 2, 4, "Y")
+        outwards = Matrix.Rotation(math.atan2(x0 - x1, y1 - y0), 4, "Z") @ Matrix.Rotation(
+            math.pi / 2, 4, "Y"
+        )
         a.add(rivet(0.0024), r["steel"], at(x, y, 0.0725, outwards))
     for side in (-1, 1):
         hip = fillet([(0.021, 0.052), (0.021, 0.060)], [0, 0], 1)
@@ -200,7 +177,11 @@ def build_body(a, r):
 
 def build_dial(a, r):
     where = at(-0.0165, -0.0500, 0.1215, FRONT)
-    rim = fillet([(0.0172, -0.002), (0.0172, 0.0022), (0.0148, 0.0022), (0.0142, 0.0008)], [0, 0.001, 0.0008, 0], 2)
+    rim = fillet(
+        [(0.0172, -0.002), (0.0172, 0.0022), (0.0148, 0.0022), (0.0142, 0.0008)],
+        [0, 0.001, 0.0008, 0],
+        2,
+    )
     a.add(turned(rim, 32, caps=(False, False)), r["steel"], where)
     a.add(turned([(0.0146, 0.0002), (0.0145, 0.0008)], 32), r["dial"], where, density=2.2)
 
@@ -237,19 +218,26 @@ def build_arm(a, r, name, side):
         t = math.radians(-42 + 264 * i / 16)
         claw.append((0.0135 * math.cos(t), 0, 0.052 - 0.0135 * math.sin(t)))
         radii.append(0.0052 * min(1.0, 0.5 + 0.4 * min(i, 16 - i)))
-    a.add(tube([(x, y, 0.104 - z) for x, y, z in claw][::-1], radii, 10, 1.45), r["cream"], where @ FLIP, lower)
-
-
-FLIP = Matrix.Translation((0, 0, 0.104)) @ Matrix.Rotation(math.pi, 4, "X")
+    a.add(tube(claw, radii, 10, 1.45), r["cream"], where, lower)
 
 
 def build_leg(a, r, name, side):
     x, y, z = PIVOTS[f"leg_{name}"]
     a.add(hose(0.0145, 0.037, 5, 0.003, 16), r["rubber"], at(x, y, z - 0.006), f"leg_{name}", 0.7)
-    sole = fillet([(-0.004, 0), (0.001, 0), (0.001, 0.0085), (-0.004, 0.0085)], [0, 0.002, 0.002, 0], 1)
+    sole = fillet(
+        [(-0.004, 0), (0.001, 0), (0.001, 0.0085), (-0.004, 0.0085)], [0, 0.002, 0.002, 0], 1
+    )
     foot = f"foot_{name}"
-    a.add(shell(0.053, 0.080, 0.0255, sole, 6, caps=(True, False)), r["rubber"], at(x, y - 0.008, 0), foot, 0.7)
-    upper = fillet([(0, 0.008), (0, 0.022), (-0.012, 0.035), (-0.024, 0.037)], [0, 0.008, 0.01, 0], 3)
+    a.add(
+        shell(0.053, 0.080, 0.0255, sole, 6, caps=(True, False)),
+        r["rubber"],
+        at(x, y - 0.008, 0),
+        foot,
+        0.7,
+    )
+    upper = fillet(
+        [(0, 0.008), (0, 0.022), (-0.012, 0.035), (-0.024, 0.037)], [0, 0.008, 0.01, 0], 3
+    )
     a.add(shell(0.052, 0.079, 0.025, upper, 6), r["orange"], at(x, y - 0.008, 0), foot)
     cuff = fillet([(0.0195, 0.030), (0.0195, 0.0405), (0.0155, 0.0415)], [0, 0.002, 0], 2)
     a.add(turned(cuff, 20), r["steel"], at(x, y, 0), foot)
@@ -257,7 +245,7 @@ def build_leg(a, r, name, side):
 
 def build(scratch):
     """Makes the scene; returns whether it is animated."""
-    a, r = Assembly("robot"), recipes()
+    a, r = Assembly("robot"), robot_materials.recipes(FACE_Z)
     build_body(a, r)
     build_head(a, r)
     build_antenna(a, r)

@@ -1,8 +1,8 @@
 """Rig and clips of the robot: a tree of rigid parts, and three loops sampled at 24 frames a second.
 
 A pose gives each part's movement from rest: an offset in metres, a rotation and a stretch in z, in
-the axes of the model (x to the robot's left, front -y, z up). Feet are planted first and legs follow:
-a leg hangs on its ankle and points at its hip, its top end sliding inside the body.
+the axes of the model (x to the robot's left, front -y, z up). Feet are planted first and legs
+follow: a leg stands on its ankle and points at its hip, its top end sliding inside the body.
 """
 
 import math
@@ -64,12 +64,16 @@ def idle(t):
     pose = Pose()
     pose.move("body", z=0.0012 * wave(t, 2))
     pose.rotate("body", pitch=-1.0 * wave(t, 2, 0.1), roll=1.2 * wave(t))
-    look = 14 * (ease(t, 0.14, 0.22) - ease(t, 0.40, 0.48)) - 11 * (ease(t, 0.58, 0.64) - ease(t, 0.84, 0.92))
+    look = 14 * (ease(t, 0.14, 0.22) - ease(t, 0.40, 0.48)) - 11 * (
+        ease(t, 0.58, 0.64) - ease(t, 0.84, 0.92)
+    )
     pose.rotate("head", pitch=1.6 * wave(t, 2, 0.2), roll=-3 * wave(t, 1, 0.05), yaw=look)
     pose.rotate("antenna", pitch=4 * wave(t, 4), roll=3 * wave(t, 3, 0.2))
     pose.stretch["eyes"] = blink(t, 0.17, 0.53, 0.61)
     for side, name in ((1, "left"), (-1, "right")):
-        pose.rotate(f"arm_{name}", pitch=3 * wave(t, 2, 0.1 * side), roll=-side * (2 + 2 * wave(t, 2, 0.3)))
+        pose.rotate(
+            f"arm_{name}", pitch=3 * wave(t, 2, 0.1 * side), roll=-side * (2 + 2 * wave(t, 2, 0.3))
+        )
         pose.rotate(f"forearm_{name}", pitch=-8 - 3 * wave(t, 2, 0.2))
     pose.rotate("key", roll=360 * t)
     plant_feet(pose)
@@ -82,7 +86,12 @@ def walk(t):
     sway = wave(t, 1, 0.0)
     pose.move("body", x=0.006 * sway, z=0.0035 * math.cos(4 * math.pi * t + 0.9) - 0.002)
     pose.rotate("body", pitch=4, roll=3.5 * sway, yaw=5 * wave(t, 1, 0.25))
-    pose.rotate("head", pitch=-3 + 1.5 * wave(t, 2, 0.1), roll=-4.5 * wave(t, 1, -0.04), yaw=-5 * wave(t, 1, 0.25))
+    pose.rotate(
+        "head",
+        pitch=-3 + 1.5 * wave(t, 2, 0.1),
+        roll=-4.5 * wave(t, 1, -0.04),
+        yaw=-5 * wave(t, 1, 0.25),
+    )
     pose.rotate("antenna", pitch=9 * wave(t, 2, 0.1), roll=6 * wave(t, 1, -0.12))
     pose.stretch["eyes"] = 1.0
     for side, name in ((1, "left"), (-1, "right")):
@@ -153,7 +162,7 @@ def point_legs(pose, pivots):
 
 
 def animate(objects, pivots):
-    """Parents the parts and gives each its actions, one track per clip; tracks of a name are a clip."""
+    """Parents the parts and gives each one track per clip; tracks of a name become one clip."""
     root = bpy.data.objects.new("robot", None)
     bpy.context.scene.collection.objects.link(root)
     rest = {}
@@ -183,7 +192,11 @@ def _write_track(obj, clip, part, rest, poses):
         turns.append(turn)
         stretches.append(Vector((1, 1, pose.stretch.get(part, 1.0))))
     action = bpy.data.actions.new(f"{clip}.{part}")
-    for path, values in (("location", places), ("rotation_quaternion", turns), ("scale", stretches)):
+    for path, values in (
+        ("location", places),
+        ("rotation_quaternion", turns),
+        ("scale", stretches),
+    ):
         for axis in range(len(values[0])):
             curve = action.fcurves.new(path, index=axis)
             curve.keyframe_points.add(len(values))

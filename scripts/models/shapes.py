@@ -121,7 +121,9 @@ def _steps(ring):
 def _cap(shape, ring, first, reverse, chart):
     """A fan round the ring's centre: no long thin triangles, and a clean shading normal."""
     centre = ring.mean(axis=0)
-    normal = np.sum([np.cross(a - centre, b - centre) for a, b in zip(ring, np.roll(ring, -1, 0))], 0)
+    normal = np.sum(
+        [np.cross(a - centre, b - centre) for a, b in zip(ring, np.roll(ring, -1, 0))], 0
+    )
     axes = [a for a in range(3) if a != int(np.argmax(np.abs(normal)))]
     low, span = ring.min(axis=0), np.maximum(np.ptp(ring, axis=0), 1e-9)
     hub = len(shape.vertices)
@@ -158,7 +160,10 @@ def shell(width, depth, radius, profile, corner_steps=6, charts="box", caps=(Fal
     rings = []
     for offset, z in profile:
         outline = rounded_rectangle(
-            max(width + 2 * offset, 1e-4), max(depth + 2 * offset, 1e-4), radius + offset, corner_steps
+            max(width + 2 * offset, 1e-4),
+            max(depth + 2 * offset, 1e-4),
+            radius + offset,
+            corner_steps,
         )
         rings.append([(x, y, z) for x, y in outline])
     return loft(rings, *caps, charts=charts)

@@ -8,7 +8,7 @@
 
 #include "slam/fitting/graph_cut.h"
 #include "slam/fitting/neighbourhood.h"
-#include "slam/fitting/random.h"
+#include "slam/geometry/random.h"
 
 namespace planecast::slam {
 
@@ -16,9 +16,12 @@ namespace planecast::slam {
 /// Graph-Cut Optimized Multi-Plane Reconstruction" (ISMAR 2021), Algorithm 1. Distances are in the
 /// unit of the model's residual (pixels or map units).
 struct RansacOptions {
-  double threshold = 2.0;       ///< eps_d: inlier distance
-  double max_rms = 1.0;         ///< eps_L: accepted RMS of the inliers' distances
-  double lambda = 0.975;        ///< spatial coherence
+  double threshold = 2.0;  ///< eps_d: inlier distance
+  double max_rms = 1.0;    ///< eps_L: accepted RMS of the inliers' distances
+  double lambda = 0.975;   ///< spatial coherence
+  /// [D] Charged for each point between 1 and 3 thresholds. At 0.6 points strewn evenly through
+  /// space score nothing; 0 is the plain score.
+  double background_cost = 0.0;
   double confidence = 0.99;     ///< mu of the stopping rule [P]
   int max_rounds = 50;          ///< N, outer loop [P]
   int max_inner = 1000;         ///< [D] bound of N_GC
@@ -102,6 +105,7 @@ class GraphCutRansac {
   static constexpr int kBlock = 128;
   /// [D] Distance, in thresholds, beyond which a point supports nothing: K falls below 0.14 there.
   static constexpr double kSupportReach = 2.0;
+  static constexpr double kBackgroundReach = 3.0;
   /// Growth of the support that is worth another cut.
   static constexpr double kGrowth = 1.002;
   /// Share of the score that the final least squares may cost.
@@ -128,14 +132,20 @@ class GraphCutRansac {
   Support support_of(const Parameters& model, double to_beat) const {
     std::array<double, kBlock> squared;
     Support support{0.0, 0};
+    const double reach = options_.background_cost > 0.0 ? kBackgroundReach : kSupportReach;
+    const double far = reach * reach * options_.threshold * options_.threshold;
     for (int begin = 0; begin < n_; begin += kBlock) {
       const int end = std::min(begin + kBlock, n_);
       if (support.score + (n_ - begin) <= to_beat) return {};
       model_.squared_residuals(model, begin, end, squared.data());
       for (int i = 0; i < end - begin; ++i) {
-        if (!in_reach(squared[i])) continue;
-        support.score += kernel_of(squared[i]);
-        support.inliers += is_close(squared[i]);
+        if (squared[i] >= far) continue;
+        if (in_reach(squared[i])) support.score += kernel_of(squared[i]);
+        if (is_close(squared[i])) {
+          ++support.inliers;
+        } else {
+          support.score -= options_.background_cost;
+        }
       }
     }
     return support;

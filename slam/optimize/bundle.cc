@@ -149,6 +149,7 @@ BundleResult local_bundle(Map& map, const Camera& camera, KeyframeId centre,
   keyframes.insert(keyframes.end(), window.begin(), window.end());
   std::sort(keyframes.begin(), keyframes.end());
   std::vector<char> fixed;
+  fixed.reserve(keyframes.size());
   for (const KeyframeId id : keyframes) {
     fixed.push_back(id == first_keyframe(map) ||
                     !std::binary_search(window.begin(), window.end(), id));

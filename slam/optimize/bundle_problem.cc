@@ -70,10 +70,12 @@ BundleProblem collect_bundle(const Map& map, const Camera& camera,
   problem.fixed = fixed;
   problem.chi2_mono = options.chi2_mono;
   problem.chi2_depth = options.chi2_depth;
+  problem.poses.reserve(keyframes.size());
   for (const KeyframeId id : keyframes) {
     problem.poses.push_back(block_from_pose(map.keyframes.at(id).cam_from_world));
   }
   std::vector<double> sigma_px;
+  sigma_px.reserve(static_cast<std::size_t>(options.levels.levels));
   for (int octave = 0; octave < options.levels.levels; ++octave) {
     sigma_px.push_back(options.levels.sigma_px(octave));
   }

@@ -31,8 +31,14 @@ struct PlausibilityOptions {
 };
 
 constexpr double kMinMaskRatio = 0.3;  ///< of a mask group's points that must be inliers
-constexpr int kMaxModelsWithoutMasks = 5;
-constexpr int kMaxSamples = 1000;
+/// [D] Without masks the fits' threshold is eps_Pi. A slab of the wider eps_d cut through a stair
+/// or through clutter holds more points than a true plane, and a plane must be as thin as eps_Pi in
+/// the end anyway.
+constexpr double kBackgroundCost = 0.5;
+constexpr int kMaxModelsWithoutMasks = 8;
+/// Implausible fits after which nothing better is expected: fits come in order of their score.
+constexpr int kMaxImplausible = 2;
+constexpr int kMaxSamples = 500;
 
 /// Half of the samples are uniform [P], half are a point and two of its neighbours in the image
 /// [D]: without masks a plane may have a tenth of the points, of which uniform samples find a
@@ -101,7 +107,7 @@ class PlaneFinder {
     }
     int found = 0;
     for (const std::vector<int>& group : groups_by_label(labels, context_.options.min_inliers)) {
-      const auto candidate = fit(group, kMinMaskRatio);
+      const auto candidate = fit(group, context_.scale.eps_d, kMinMaskRatio);
       if (!candidate || !is_broad(*candidate) || !stands_out(*candidate)) continue;
       add_plane(*candidate, shown_.label[group.front()]);
       ++found;
@@ -115,18 +121,23 @@ class PlaneFinder {
       if (shown_.plane[i] == kNone) pool.push_back(i);
     }
     int found = 0;
+    int implausible = 0;
     const int min_size = std::max(context_.options.min_inliers, plausible_.min_unmasked);
     fit_sequentially(pool, min_size, kMaxModelsWithoutMasks, [&](const std::vector<int>& left) {
-      auto candidate = fit(left, 0.0);
+      if (implausible == kMaxImplausible) return std::vector<int>();
+      auto candidate = fit(left, context_.scale.eps_pi, 0.0);
       if (!candidate) return std::vector<int>();
       // A slab of clutter leaves the pool too, or it would be found again.
       const std::vector<int> consumed = candidate->inliers;
+      ++implausible;
+      if (!widen(left, *candidate)) return consumed;
       keep_coherent(*candidate);
       keep_connected(*candidate);
       if (static_cast<int>(candidate->inliers.size()) < min_size || !is_broad(*candidate) ||
           !stands_out(*candidate)) {
         return consumed;
       }
+      --implausible;
       add_plane(*candidate, 0);
       ++found;
       return candidate->inliers;
@@ -135,9 +146,9 @@ class PlaneFinder {
   }
 
  private:
-  RansacOptions ransac_options(double min_ratio) const {
+  RansacOptions ransac_options(double threshold, double min_ratio) const {
     RansacOptions options;
-    options.threshold = context_.scale.eps_d;
+    options.threshold = threshold;
     options.max_rms = context_.scale.eps_pi;
     options.lambda = context_.options.lambda;
     options.min_inliers = context_.options.min_inliers;
@@ -148,14 +159,15 @@ class PlaneFinder {
     return options;
   }
 
-  std::optional<Candidate> fit(const std::vector<int>& group, double min_ratio) {
+  std::optional<Candidate> fit(const std::vector<int>& group, double threshold, double min_ratio) {
     const PlanePoints points = select(shown_.points, group);
     const PlaneModel model(points);
     std::vector<NeighbourPair> neighbours;
     if (context_.options.graph_cut) {
       neighbours = radius_neighbours(points.positions, 2.0 * context_.scale.eps_d);
     }
-    RansacOptions options = ransac_options(min_ratio);
+    RansacOptions options = ransac_options(threshold, min_ratio);
+    if (!shown_.has_masks) options.background_cost = kBackgroundCost;
     options.seed =
         mix_seed(context_.options.seed, static_cast<std::uint64_t>(keyframe_) * 4096 + ++fits_);
     const auto result = run(model, group, neighbours, options);
@@ -178,6 +190,28 @@ class PlaneFinder {
     }
     LocalPlaneSampler sampler(nearest_, group);
     return GraphCutRansac(model, sampler, neighbours, options).run();
+  }
+
+  /// Takes in what lies within eps_d and refits; false where that is thicker than eps_Pi.
+  bool widen(const std::vector<int>& pool, Candidate& candidate) const {
+    std::vector<double> weights;
+    for (const double band : shown_.points.band) weights.push_back(1.0 / (band * band));
+    std::optional<PlaneFit> fitted;
+    for (int round = 0; round < 2; ++round) {
+      candidate.inliers.clear();
+      for (const int i : pool) {
+        const double distance = candidate.plane.signed_distance(shown_.points.positions[i]);
+        if (std::abs(distance) < shown_.points.band[i] * context_.scale.eps_d &&
+            shown_.points.view_from[i].dot(candidate.plane.normal) > 0.0) {
+          candidate.inliers.push_back(i);
+        }
+      }
+      fitted = fit_plane(shown_.points.positions, candidate.inliers, weights);
+      if (!fitted) return false;
+      const bool turned = fitted->plane.normal.dot(candidate.plane.normal) < 0.0;
+      candidate.plane = turned ? fitted->plane.flipped() : fitted->plane;
+    }
+    return fitted->rms < context_.scale.eps_pi;
   }
 
   std::vector<char> marks_of(const Candidate& candidate) const {

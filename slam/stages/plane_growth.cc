@@ -23,6 +23,9 @@ constexpr int kMostSupport = 600;
 /// Rounds in which what has just joined may bring in its neighbours.
 constexpr int kRounds = 3;
 
+/// RMS, in eps_Pi, beyond which a plane's support has stopped being one.
+constexpr double kMaxThickness = 1.5;
+
 /// Which mask instances of this image are which plane's.
 class MaskVotes {
  public:
@@ -162,9 +165,10 @@ int drop_weak_planes(Map& map, const PlaneContext& context) {
   for (Plane& plane : map.planes) {
     update_figures(plane, support[plane.id], context);
     const bool starved = support[plane.id].points.size() < context.options.min_inliers;
+    const bool thick = plane.rms > kMaxThickness * context.scale.eps_pi;
     const bool stalled =
         plane.weak && plane.stalled_keyframes >= context.options.weak_max_keyframes;
-    if (starved || stalled) dropped.push_back(plane.id);
+    if (starved || thick || stalled) dropped.push_back(plane.id);
     ++plane.age_keyframes;
     ++plane.stalled_keyframes;
   }
