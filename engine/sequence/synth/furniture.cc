@@ -74,11 +74,11 @@ void add_cushion(RoomModel& model, const Place& place, const Vector3d& size, dou
   constexpr int kCols = 28;
   constexpr int kRows = 14;
   const auto power = [squareness](double x) {
-    return std::copysign(std::pow(std::abs(x), squareness), x);
+    return std::copysign(std::pow(std::abs(x), squareness), x);  // 0 at the poles: closed
   };
   std::vector<Vector3d> points;
   for (int j = 0; j <= kRows; ++j) {
-    const double polar = kPi * (static_cast<double>(j) / kRows - 0.5) * 0.999;
+    const double polar = kPi * (static_cast<double>(j) / kRows - 0.5);
     for (int i = 0; i <= kCols; ++i) {
       const double around = 2.0 * kPi * i / kCols;
       const Vector3d local(0.5 * size.x() * power(std::cos(polar)) * power(std::cos(around)),
