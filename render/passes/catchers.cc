@@ -79,7 +79,7 @@ void CatcherPass::prepare(ShaderLibrary& shaders, const CatcherInput& input) {
     signature.add(plan->contact_region.empty());
     if (maps.signature != signature.value()) {
       maps.signature = signature.value();
-      if (plan->sun) make_penumbra(shaders, input, plan->frame, maps);
+      if (plan->sun && input.shadow != nullptr) make_penumbra(shaders, input, plan->frame, maps);
       if (!plan->contact_region.empty()) make_contact(shaders, input, *plan, maps);
     }
     prepared_.push_back({*plan, &mask_of(patch, plan->frame, hash), &maps, patch.edge_softness_m});
