@@ -12,10 +12,10 @@
 namespace planecast::engine {
 
 struct SequenceOptions {
-  std::string camera;                ///< preset name or file; empty: camera.yaml in the folder, else a guess
-  std::optional<cv::Size> size;      ///< resize the frames (the intrinsics follow)
-  int first_frame = 0;               ///< --frames A:B, 0-based
-  int end_frame = -1;                ///< excluded; -1 = to the end
+  std::string camera;  ///< preset name or file; empty: camera.yaml in the folder, else a guess
+  std::optional<cv::Size> size;  ///< resize the frames (the intrinsics follow)
+  int first_frame = 0;           ///< --frames A:B, 0-based
+  int end_frame = -1;            ///< excluded; -1 = to the end
 };
 
 /// World-from-camera pose with its time.

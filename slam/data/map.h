@@ -24,13 +24,19 @@ class Map {
   /// Removes it; a landmark left with fewer than `min_observations` is erased too.
   void remove_observation(LandmarkId landmark, KeyframeId keyframe, int min_observations = 2);
   void erase_landmark(LandmarkId landmark);
-  /// Removes the keyframe and its observations and hangs its children below its parent.
+  /// Removes the keyframe and its observations and hangs its children below its parent; its pose
+  /// relative to the parent is remembered for keyframe_pose().
   void erase_keyframe(KeyframeId keyframe);
   /// Moves the observations of `from` to `to` (where `to` is not seen yet) and erases `from`, which is
   /// found as `to` from then on by resolve().
   void replace_landmark(LandmarkId from, LandmarkId to);
   /// The living landmark that `id` has become, or kNone.
   LandmarkId resolve(LandmarkId id) const;
+
+  /// cam_from_world of a living keyframe, or of an erased one by way of its ancestors.
+  Pose keyframe_pose(KeyframeId keyframe) const;
+  /// The keyframe itself, or the nearest ancestor that was not erased.
+  KeyframeId living_ancestor(KeyframeId keyframe) const;
 
   /// Keyframes that share at least `min_shared` landmarks with `keyframe`, most first, ties by id.
   std::vector<std::pair<KeyframeId, int>> covisible(KeyframeId keyframe, int min_shared = 15) const;
@@ -44,7 +50,13 @@ class Map {
   void transform(double scale, const Pose& new_from_old);
 
  private:
+  struct ErasedKeyframe {
+    KeyframeId id;
+    KeyframeId parent;
+    Pose cam_from_parent;
+  };
   std::vector<std::pair<LandmarkId, LandmarkId>> replaced_;  ///< ascending by first
+  std::vector<ErasedKeyframe> erased_keyframes_;
 };
 
 }  // namespace planecast::slam

@@ -23,7 +23,9 @@ struct PnpResult {
   int num_inliers = 0;
 };
 
-/// RANSAC over a minimal solver with a final refinement; seeded. `sigma_px` is per pair.
+/// RANSAC (MSAC) over the minimal solver AP3P (Ke, Roumeliotis, CVPR 2017), every new best refined
+/// by Gauss-Newton on its inliers; seeded. Ends early at 99.9 % confidence. `sigma_px` is per pair.
+/// Returns nothing with fewer inliers than asked for, of which 4 are the least.
 std::optional<PnpResult> solve_pnp(const Camera& camera,
                                    const std::vector<Eigen::Vector3d>& points_world,
                                    const std::vector<Eigen::Vector2d>& pixels,

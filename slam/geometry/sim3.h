@@ -18,8 +18,8 @@ struct Similarity {
   }
 };
 
-/// Least-squares alignment (Umeyama 1991) of source points on target points; at least 3 of each, not
-/// collinear. With `with_scale` false the scale is 1 (SE3).
+/// Least-squares alignment (Umeyama 1991) of source points on target points; at least 3 of each,
+/// not collinear. With `with_scale` false the scale is 1 (SE3).
 Similarity align_points(const std::vector<Eigen::Vector3d>& source,
                         const std::vector<Eigen::Vector3d>& target, bool with_scale);
 

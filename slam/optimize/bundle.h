@@ -28,31 +28,40 @@ struct BundleResult {
   double focal_factor = 1.0;  ///< refined fx / given fx
 };
 
-/// Ceres with analytic Jacobians, Schur ordering, num_threads = 1 (two are not repeatable), Huber; two
-/// passes with the outliers removed between and after. Poses, landmarks and observations of `map` are
-/// updated; planes are not touched. The first keyframe of the map (and, in mono, what fixes the gauge) is held.
+/// Ceres with analytic Jacobians, Schur ordering, num_threads = 1 (two are not repeatable), Huber;
+/// two passes with the outliers removed between and after. Poses, landmarks and observations of
+/// `map` are updated; planes are not touched. The first keyframe of the map (and, in mono, what
+/// fixes the gauge) is held.
 BundleResult local_bundle(Map& map, const Camera& camera, KeyframeId centre,
                           const BundleOptions& options);
-/// All keyframes and landmarks. Where options.refine_focal is set, `camera` is updated and so are, by the
-/// caller, the undistorted pixels.
+/// All keyframes and landmarks. Where options.refine_focal is set, `camera` is updated and so are,
+/// by the caller, the undistorted pixels.
 BundleResult global_bundle(Map& map, Camera& camera, const BundleOptions& options);
 
 struct JointOptions {
   BundleOptions bundle;
-  double plane_sigma = 0.01;           ///< eps_Pi in map units
-  double max_reprojection_rise = 0.01; ///< the result is dropped if the reprojection cost rises by more
+  double plane_sigma = 0.01;  ///< eps_Pi in map units
+  /// The result is dropped if the robust reprojection cost rises by more than this share.
+  double max_reprojection_rise = 0.01;
+  /// How often plane_sigma is doubled and the refinement tried anew before it is dropped. Holding a
+  /// point of n sights to its plane takes one of its 2 n - 3 degrees of freedom, so that even true
+  /// planes raise the cost by a few per cent when they bind tightly.
+  int max_relaxations = 5;
 };
 
 struct JointResult {
   bool kept = false;
+  double plane_sigma = 0.0;               ///< of the last try
   double reprojection_cost_before = 0.0;  ///< robust
-  double reprojection_cost_after = 0.0;
-  double plane_rms_before = 0.0;  ///< of owned landmarks, map units
-  double plane_rms_after = 0.0;
+  double reprojection_cost_after = 0.0;   ///< of the last try
+  double plane_rms_before = 0.0;          ///< of owned landmarks, map units
+  double plane_rms_after = 0.0;           ///< of the last try
 };
 
-/// Final joint refinement of poses, landmarks and planes (the paper's last equation): reprojection with
-/// Huber and (n.v + d)/plane_sigma with Cauchy, planes on the unit sphere x R.
+/// Final joint refinement of poses, landmarks and planes (the paper's last equation): reprojection
+/// with Huber and (n.v + d)/plane_sigma with Cauchy, planes on the unit sphere x R. A monocular map
+/// keeps the distance between its first keyframe and the one farthest from it. No observation is
+/// removed.
 JointResult refine_jointly(Map& map, const Camera& camera, const JointOptions& options);
 
 }  // namespace planecast::slam

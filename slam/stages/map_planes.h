@@ -10,37 +10,39 @@ namespace planecast::slam {
 enum class PlaneMerge { kDefault, kPaper };
 
 struct PlaneMappingOptions {
-  double eps_d = 0.02;          ///< point-to-plane inlier distance at scale 1 [P]
-  double eps_pi = 0.01;         ///< accepted RMS at scale 1 [P]
-  double lambda = 0.6;          ///< spatial coherence [P]
-  int min_inliers = 12;         ///< below it a fit is no plane
-  int strong_inliers = 30;      ///< below it a plane is weak
-  int weak_max_keyframes = 5;   ///< a weak plane that has not grown for this long is dropped
+  double eps_d = 0.02;         ///< point-to-plane inlier distance at scale 1 [P]
+  double eps_pi = 0.01;        ///< accepted RMS at scale 1 [P]
+  double lambda = 0.6;         ///< spatial coherence [P]
+  int min_inliers = 12;        ///< below it a fit is no plane
+  int strong_inliers = 30;     ///< below it a plane is weak
+  int weak_max_keyframes = 5;  ///< a weak plane that has not grown for this long is dropped
   PlaneMerge merge = PlaneMerge::kDefault;
-  bool graph_cut = true;        ///< false: plain sequential RANSAC, for the ablation
+  bool graph_cut = true;  ///< false: plain sequential RANSAC, for the ablation
   std::uint64_t seed = 1;
 };
 
-/// Thresholds in map units as used at one keyframe (adaptive scale, algorithms.md section 1 item 11).
+/// Thresholds in map units as used at one keyframe (adaptive scale, algorithms.md section 1 item
+/// 11).
 struct PlaneScale {
   double eps_d = 0.0;
   double eps_pi = 0.0;
 };
 
 struct PlaneMappingStats {
-  int culled = 0;       ///< landmarks removed as non-planar
+  int culled = 0;  ///< landmarks removed as non-planar
   int new_planes = 0;
   int merged = 0;
-  int expanded = 0;     ///< landmarks that joined
+  int expanded = 0;  ///< landmarks that joined
   int reestimated = 0;
   int dropped = 0;
-  int refined = 0;      ///< landmarks projected onto their plane
-  int refused = 0;      ///< projections refused by the reprojection test
+  int refined = 0;  ///< landmarks projected onto their plane
+  int refused = 0;  ///< projections refused by the reprojection test
   double cull_ms = 0.0, new_ms = 0.0, merge_expand_ms = 0.0, reestimate_ms = 0.0, refine_ms = 0.0;
 };
 
 /// The plane steps of local mapping (the paper's section "Local Mapping with Plane Expanded and
-/// Re-estimated"). Each is its own function; state between calls is in the map alone, but for the scale.
+/// Re-estimated"). Each is its own function; state between calls is in the map alone, but for the
+/// scale.
 class PlaneMapper {
  public:
   PlaneMapper(const PlaneMappingOptions& options, const Camera& camera, bool rgbd);
@@ -59,7 +61,6 @@ class PlaneMapper {
   Camera camera_;
   bool rgbd_;
   PlaneScale scale_;
-  int calls_ = 0;
 };
 
 }  // namespace planecast::slam

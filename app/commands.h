@@ -1,0 +1,20 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace planecast::app {
+
+/// What the parsed command line asks for; returns the exit status.
+using Action = std::function<int()>;
+
+/// Each adds one subcommand, which sets `action` when it is chosen.
+void add_run(CLI::App& app, Action& action);
+void add_track(CLI::App& app, Action& action);
+void add_render(CLI::App& app, Action& action);
+void add_synth(CLI::App& app, Action& action);
+void add_segment(CLI::App& app, Action& action);
+void add_evaluate(CLI::App& app, Action& action);
+void add_model(CLI::App& app, Action& action);
+
+}  // namespace planecast::app

@@ -1,0 +1,144 @@
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "commands.h"
+#include "engine/evaluate/overlay.h"
+#include "engine/evaluate/planes.h"
+#include "engine/evaluate/trajectory.h"
+#include "engine/evaluate/visibility.h"
+#include "engine/output/atomic_file.h"
+#include "engine/output/planes_json.h"
+#include "engine/pipeline/reconstruction_io.h"
+#include "engine/sequence/groundtruth.h"
+#include "engine/user_error.h"
+#include "options.h"
+
+namespace planecast::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct EvaluateCommand {
+  CommonOptions common;
+  std::string estimate;
+  std::string groundtruth;
+  std::string reconstruction;
+  std::string align;  ///< empty: by the reconstruction's scale; sim3 for trajectories
+  std::string json;
+  bool causal = false;
+
+  int trajectory() const;
+  int planes() const;
+  int overlay() const;
+
+ private:
+  template <typename Result>
+  int print(const std::optional<Result>& result) const;
+  engine::TrajectoryOptions alignment(bool metric) const;
+};
+
+engine::TrajectoryOptions EvaluateCommand::alignment(bool metric) const {
+  engine::TrajectoryOptions options;
+  const bool rigid = align.empty() ? metric : align == "se3";
+  options.align = rigid ? engine::Alignment::kSe3 : engine::Alignment::kSim3;
+  return options;
+}
+
+template <typename Result>
+int EvaluateCommand::print(const std::optional<Result>& result) const {
+  if (!result) {
+    throw engine::UserError(groundtruth +
+                            ": fewer than 3 poses of the estimate have a counterpart in time");
+  }
+  const Console console = common.console();
+  std::string table = engine::format_table(*result);
+  while (!table.empty() && table.back() == '\n') table.pop_back();
+  console.result(table);
+  if (!json.empty()) engine::write_file(json, engine::to_json(*result).dump(2) + "\n");
+  return kDone;
+}
+
+int EvaluateCommand::trajectory() const {
+  return print(engine::evaluate_trajectory(engine::read_trajectory(estimate),
+                                           engine::read_trajectory(groundtruth), alignment(false)));
+}
+
+/// A sequence with exact poses and planes.
+struct Truth {
+  std::unique_ptr<engine::Sequence> sequence;
+  std::vector<engine::TimedPose> poses;
+  std::vector<engine::PlaneRecord> planes;
+};
+
+Truth read_truth(const std::string& folder) {
+  Truth truth;
+  truth.sequence = engine::open_sequence(folder, {});
+  truth.poses = engine::read_trajectory(fs::path(folder) / "groundtruth.txt");
+  truth.planes = engine::read_planes_json(fs::path(folder) / "planes.json").planes;
+  return truth;
+}
+
+int EvaluateCommand::planes() const {
+  const engine::Reconstruction map = engine::read_reconstruction(reconstruction);
+  const Truth truth = read_truth(groundtruth);
+  engine::PlaneEvaluationOptions options;
+  options.trajectory = alignment(map.metric);
+  if (truth.sequence->has_labels()) options.seen_labels = engine::labels_in_view(*truth.sequence);
+  return print(
+      engine::evaluate_planes(map, truth.planes, truth.poses, truth.sequence->camera(), options));
+}
+
+int EvaluateCommand::overlay() const {
+  const engine::Reconstruction map = engine::read_reconstruction(reconstruction);
+  const Truth truth = read_truth(groundtruth);
+  engine::OverlayOptions options;
+  options.planes.trajectory = alignment(map.metric);
+  options.causal = causal;
+  return print(
+      engine::evaluate_overlay(map, truth.planes, truth.poses, truth.sequence->camera(), options));
+}
+
+void add_shared_options(CLI::App& command, EvaluateCommand& options) {
+  command
+      .add_option("--align", options.align, "se3 or sim3 (default: sim3, or se3 for metric maps)")
+      ->check(CLI::IsMember({"se3", "sim3"}));
+  command.add_option("--json", options.json, "Write the figures to this file too");
+  add_common_options(command, options.common);
+}
+
+}  // namespace
+
+void add_evaluate(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("evaluate", "Compare results with the truth");
+  command->require_subcommand(1);
+  auto options = std::make_shared<EvaluateCommand>();
+
+  CLI::App* trajectory =
+      command->add_subcommand("trajectory", "Absolute and relative trajectory error");
+  trajectory->add_option("--estimate", options->estimate, "Trajectory, TUM format")->required();
+  trajectory->add_option("--groundtruth", options->groundtruth, "Trajectory, TUM format")
+      ->required();
+  add_shared_options(*trajectory, *options);
+  trajectory->callback(
+      [options, &action] { action = [options] { return options->trajectory(); }; });
+
+  const auto add_map_command = [&](const char* name, const char* what,
+                                   int (EvaluateCommand::*run)() const) {
+    CLI::App* sub = command->add_subcommand(name, what);
+    sub->add_option("--reconstruction", options->reconstruction, "Reconstruction folder")
+        ->required();
+    sub->add_option("--groundtruth", options->groundtruth,
+                    "Synthetic sequence with groundtruth.txt and planes.json")
+        ->required();
+    add_shared_options(*sub, *options);
+    sub->callback(
+        [options, run, &action] { action = [options, run] { return (*options.*run)(); }; });
+    return sub;
+  };
+  add_map_command("planes", "Planes found, missed and wrong", &EvaluateCommand::planes);
+  add_map_command("overlay", "Drift and jitter of content in pixels", &EvaluateCommand::overlay)
+      ->add_flag("--causal", options->causal, "Judge the poses as they were known at their frames");
+}
+
+}  // namespace planecast::app

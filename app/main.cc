@@ -1,0 +1,59 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "commands.h"
+#include "console.h"
+#include "engine/user_error.h"
+#include "options.h"
+
+namespace {
+
+using namespace planecast;
+
+/// Messages are one line each, whatever made them.
+std::string one_line(std::string text) {
+  std::ranges::replace(text, '\n', ' ');
+  while (!text.empty() && text.back() == ' ') text.pop_back();
+  return text;
+}
+
+int run_action(const app::Action& action) {
+  try {
+    return action();
+  } catch (const engine::UserError& error) {
+    std::fprintf(stderr, "planecast: %s\n", one_line(error.what()).c_str());
+    return app::kBadInput;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "planecast: internal error: %s\n", one_line(error.what()).c_str());
+    return app::kInternalError;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  app::silence_libraries();
+  CLI::App cli("Puts glTF objects on the planes of a recorded image sequence.", "planecast");
+  cli.require_subcommand(1);
+  cli.set_version_flag("--version", "planecast 0.1.0");
+  app::Action action;
+  app::add_run(cli, action);
+  app::add_track(cli, action);
+  app::add_render(cli, action);
+  app::add_synth(cli, action);
+  app::add_segment(cli, action);
+  app::add_evaluate(cli, action);
+  app::add_model(cli, action);
+  try {
+    cli.parse(argc, argv);
+  } catch (const CLI::Success& help) {
+    return cli.exit(help);
+  } catch (const CLI::ParseError& error) {
+    std::fprintf(stderr, "planecast: %s (see planecast --help)\n", one_line(error.what()).c_str());
+    return app::kBadInput;
+  }
+  return run_action(action);
+}

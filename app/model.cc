@@ -1,0 +1,84 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "commands.h"
+#include "engine/output/png.h"
+#include "engine/pipeline/turntable.h"
+#include "engine/user_error.h"
+#include "options.h"
+#include "render/gltf/import.h"
+
+namespace planecast::app {
+namespace {
+
+struct ModelCommand {
+  CommonOptions common;
+  engine::TurntableOptions turntable;
+  std::string file;
+  std::string output;
+  std::string animation;
+
+  int run() const {
+    const Console console = common.console();
+    const render::ImportResult model = render::import_gltf(file);
+    if (!model.model) throw engine::UserError(file + ": " + model.error);
+    for (const std::string& warning : model.warnings) console.warning(file + ": " + warning);
+    describe(*model.model, console);
+    if (output.empty()) return kDone;
+    engine::TurntableOptions options = turntable;
+    options.animation = find_animation(*model.model);
+    engine::write_png(engine::draw_turntable(model.model, options), output);
+    console.result(output);
+    return kDone;
+  }
+
+ private:
+  void describe(const render::Model& model, const Console& console) const {
+    const render::Bounds bounds = render::model_bounds(model);
+    char text[160];
+    std::snprintf(text, sizeof(text), "size %.4g x %.4g x %.4g m, base at y = %.4g m",
+                  static_cast<double>(bounds.max.x - bounds.min.x),
+                  static_cast<double>(bounds.max.y - bounds.min.y),
+                  static_cast<double>(bounds.max.z - bounds.min.z),
+                  static_cast<double>(bounds.min.y));
+    console.info(text);
+    const std::vector<std::string> names = render::animation_names(model);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const double seconds = render::animation_duration_s(model, static_cast<int>(i));
+      std::snprintf(text, sizeof(text), "animation %zu '%s', %.2f s", i, names[i].c_str(), seconds);
+      console.info(text);
+    }
+  }
+
+  int find_animation(const render::Model& model) const {
+    if (animation.empty()) return -1;
+    const std::vector<std::string> names = render::animation_names(model);
+    const auto found = std::ranges::find(names, animation);
+    if (found == names.end()) throw engine::UserError(file + ": no animation '" + animation + "'");
+    return static_cast<int>(found - names.begin());
+  }
+};
+
+}  // namespace
+
+void add_model(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("model", "Describe a glTF model and draw it from around");
+  auto options = std::make_shared<ModelCommand>();
+  command->add_option("file", options->file, "glTF or GLB file")->required();
+  command->add_option("-o,--output", options->output, "PNG to write");
+  command->add_option("--views", options->turntable.views, "Views around the model")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  command->add_option("--view-size", options->turntable.view_size_px, "Side of a view in pixels")
+      ->check(CLI::Range(32, 2048))
+      ->capture_default_str();
+  command->add_option("--animation", options->animation, "Name of an animation to pose it by");
+  command->add_option("--time", options->turntable.time_s, "Seconds into the animation")
+      ->capture_default_str();
+  add_common_options(*command, options->common);
+  command->callback([options, &action] { action = [options] { return options->run(); }; });
+}
+
+}  // namespace planecast::app

@@ -1,0 +1,143 @@
+#include "options.h"
+
+#include <cstdio>
+
+#include "engine/user_error.h"
+
+namespace planecast::app {
+namespace {
+
+/// "A:B" with either side left out; throws UserError.
+void parse_frames(const std::string& text, engine::SequenceOptions& options) {
+  int first = 0;
+  int end = -1;
+  char rest = 0;
+  const bool both = std::sscanf(text.c_str(), "%d:%d%c", &first, &end, &rest) == 2;
+  const bool from =
+      !both && std::sscanf(text.c_str(), "%d:%c", &first, &rest) == 1 && text.back() == ':';
+  const bool to = !both && !from && std::sscanf(text.c_str(), ":%d%c", &end, &rest) == 1;
+  if (to) first = 0;
+  if ((!both && !from && !to) || first < 0 || (!from && end <= first)) {
+    throw engine::UserError("--frames " + text + ": expected A:B with 0 <= A < B");
+  }
+  options.first_frame = first;
+  options.end_frame = from ? -1 : end;
+}
+
+cv::Size parse_size(const std::string& text) {
+  constexpr int kMost = 16384;
+  int width = 0;
+  int height = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 16 ||
+      height < 16 || width > kMost || height > kMost) {
+    throw engine::UserError("--size " + text + ": expected WxH in pixels, as 640x480");
+  }
+  return {width, height};
+}
+
+Eigen::Vector3d parse_direction(const std::string& text) {
+  Eigen::Vector3d v = Eigen::Vector3d::Zero();
+  char rest = 0;
+  const int count = std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &v.x(), &v.y(), &v.z(), &rest);
+  if (count != 3 || !v.allFinite() || v.norm() < 1e-9) {
+    throw engine::UserError("--up " + text + ": expected a direction as x,y,z");
+  }
+  return v.normalized();
+}
+
+}  // namespace
+
+Console CommonOptions::console() const {
+  const Verbosity verbosity = quiet     ? Verbosity::kQuiet
+                              : verbose ? Verbosity::kVerbose
+                                        : Verbosity::kNormal;
+  return Console(verbosity, !no_progress);
+}
+
+void add_common_options(CLI::App& command, CommonOptions& options) {
+  CLI::Option* quiet = command.add_flag("--quiet", options.quiet, "Print results and errors alone");
+  command.add_flag("--verbose", options.verbose, "Print what is being done")->excludes(quiet);
+  command.add_flag("--no-progress", options.no_progress, "No progress bar");
+  command.add_option("--threads", options.threads, "Threads to use; changes no result")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  command.add_option("--seed", options.seed, "Seed of everything random")->capture_default_str();
+}
+
+void add_input_options(CLI::App& command, InputOptions& options) {
+  command.add_option("sequence", options.sequence, "Sequence folder, image folder or video file")
+      ->required();
+  command.add_option("--camera", options.camera,
+                     "Camera preset or file (default: camera.yaml of the sequence, else a guess)");
+  command.add_option("--frames", options.frames, "Frames A:B, from 0, B excluded");
+  command.add_option("--size", options.size, "Resize the frames to WxH");
+  command.add_flag("--skip-unreadable", options.skip_unreadable,
+                   "Go on after a frame that cannot be read");
+}
+
+std::unique_ptr<engine::Sequence> InputOptions::open() const {
+  engine::SequenceOptions result;
+  result.camera = camera;
+  if (!frames.empty()) parse_frames(frames, result);
+  if (!size.empty()) result.size = parse_size(size);
+  return engine::open_sequence(sequence, result);
+}
+
+void add_tracking_options(CLI::App& command, TrackingOptions& options) {
+  command.add_option("--mode", options.mode, "mono, rgbd or auto")
+      ->check(CLI::IsMember({"mono", "rgbd", "auto"}))
+      ->capture_default_str();
+  command
+      .add_option("--segmentation", options.segmentation, "Plane masks: auto, masks, depth or none")
+      ->check(CLI::IsMember({"auto", "masks", "depth", "none"}))
+      ->capture_default_str();
+  command.add_flag("--causal", options.causal,
+                   "Each frame as it was known at its time (default: two passes)");
+  command.add_option("--up", options.up,
+                     "World's up direction x,y,z (first camera: x right, y down)");
+  command.add_option("--plane-merge", options.plane_merge, "default or paper")
+      ->check(CLI::IsMember({"default", "paper"}))
+      ->capture_default_str();
+}
+
+engine::TrackSequenceOptions TrackingOptions::resolve(const CommonOptions& common,
+                                                      const InputOptions& input) const {
+  engine::TrackSequenceOptions result;
+  result.mode = mode;
+  result.segmentation = segmentation;
+  result.causal = causal;
+  result.threads = common.threads;
+  result.seed = common.seed;
+  result.skip_unreadable = input.skip_unreadable;
+  result.plane_merge = plane_merge;
+  if (!up.empty()) result.up = parse_direction(up);
+  return result;
+}
+
+engine::Reconstruction track_with_progress(engine::Sequence& sequence,
+                                           const engine::TrackSequenceOptions& options,
+                                           const Console& console) {
+  for (const std::string& warning : sequence.warnings()) console.warning(warning);
+  ProgressBar bar(console, "tracking");
+  return engine::track_sequence(sequence, options,
+                                [&bar](int done, int total) { bar.update(done, total); });
+}
+
+TrackingReport report_tracking(const engine::Reconstruction& reconstruction, bool causal) {
+  TrackingReport report;
+  report.frames = static_cast<int>(reconstruction.frames.size());
+  for (const engine::FrameRecord& frame : reconstruction.frames) {
+    if (causal ? frame.causal_world_from_cam : frame.world_from_cam) ++report.posed;
+  }
+  report.poor = 2 * report.posed < report.frames;
+  char text[160];
+  std::snprintf(text, sizeof(text),
+                "%d of %d frames have a pose, %zu keyframes, %zu planes, %zu points", report.posed,
+                report.frames, reconstruction.keyframes.size(), reconstruction.planes.size(),
+                reconstruction.points.size());
+  report.line = text;
+  return report;
+}
+
+}  // namespace planecast::app

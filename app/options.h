@@ -1,0 +1,72 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "console.h"
+#include "engine/pipeline/reconstruction.h"
+#include "engine/pipeline/track_sequence.h"
+#include "engine/sequence/sequence.h"
+
+namespace planecast::app {
+
+/// What every command takes.
+struct CommonOptions {
+  bool quiet = false;
+  bool verbose = false;
+  bool no_progress = false;
+  int threads = 2;
+  std::uint64_t seed = 1;
+
+  Console console() const;
+};
+void add_common_options(CLI::App& command, CommonOptions& options);
+
+/// Which frames of which sequence, seen by which camera.
+struct InputOptions {
+  std::string sequence;
+  std::string camera;
+  std::string frames;  ///< A:B
+  std::string size;    ///< WxH
+  bool skip_unreadable = false;
+
+  std::unique_ptr<engine::Sequence> open() const;
+};
+void add_input_options(CLI::App& command, InputOptions& options);
+
+/// SLAM's own options.
+struct TrackingOptions {
+  std::string mode = "auto";
+  std::string segmentation = "auto";
+  std::string up;  ///< x,y,z
+  std::string plane_merge = "default";
+  bool causal = false;
+
+  engine::TrackSequenceOptions resolve(const CommonOptions& common,
+                                       const InputOptions& input) const;
+};
+void add_tracking_options(CLI::App& command, TrackingOptions& options);
+
+/// Tracks with a progress bar and shows the sequence's warnings.
+engine::Reconstruction track_with_progress(engine::Sequence& sequence,
+                                           const engine::TrackSequenceOptions& options,
+                                           const Console& console);
+
+/// Frames without a pose, and the line that says so.
+struct TrackingReport {
+  int frames = 0;
+  int posed = 0;
+  bool poor = false;  ///< more than half of the frames have no pose
+  std::string line;
+};
+TrackingReport report_tracking(const engine::Reconstruction& reconstruction, bool causal);
+
+/// Exit status by the manual.
+inline constexpr int kDone = 0;
+inline constexpr int kPoorResult = 1;
+inline constexpr int kBadInput = 2;
+inline constexpr int kInternalError = 3;
+
+}  // namespace planecast::app

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+
+#include "engine/pipeline/render_sequence.h"
+#include "options.h"
+
+namespace planecast::app {
+
+/// Options of the second half, shared by `run` and `render`.
+struct RenderingOptions {
+  std::string scene;  ///< scene file; empty: one built-in model where the camera looks
+  bool png = false;
+  bool no_video = false;
+  bool debug_overlay = false;
+  bool resume = false;
+};
+void add_rendering_options(CLI::App& command, RenderingOptions& options);
+
+/// The scene file, checked as far as it can be before anything is tracked. Nothing without one.
+std::optional<engine::SceneFile> read_scene(const RenderingOptions& options,
+                                            const engine::Sequence& sequence);
+
+/// Renders with a progress bar; without a scene file places the built-in model.
+engine::RenderSequenceResult render_with_progress(engine::Sequence& sequence,
+                                                  const engine::Reconstruction& reconstruction,
+                                                  const std::optional<engine::SceneFile>& scene,
+                                                  const engine::RenderSequenceOptions& options,
+                                                  const std::filesystem::path& folder,
+                                                  const Console& console);
+
+engine::RenderSequenceOptions resolve(const RenderingOptions& rendering,
+                                      const CommonOptions& common, const InputOptions& input,
+                                      bool causal);
+
+/// Prints where the result is and how it went.
+void report_rendering(const engine::RenderSequenceResult& result,
+                      const std::filesystem::path& folder, const Console& console);
+
+}  // namespace planecast::app

@@ -1,0 +1,104 @@
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "commands.h"
+#include "engine/output/atomic_file.h"
+#include "engine/output/report.h"
+#include "engine/pipeline/reconstruction_io.h"
+#include "engine/user_error.h"
+#include "rendering.h"
+
+namespace planecast::app {
+namespace {
+
+struct RunCommand {
+  CommonOptions common;
+  InputOptions input;
+  TrackingOptions tracking;
+  RenderingOptions rendering;
+  std::string output;
+
+  int run() const;
+
+ private:
+  engine::Reconstruction reconstruct(engine::Sequence& sequence, const Console& console) const;
+  void write_report(const engine::Reconstruction& reconstruction,
+                    const engine::RenderSequenceResult& result,
+                    const engine::Sequence& sequence) const;
+};
+
+/// Tracks, or, to resume, takes what an earlier run has completed.
+engine::Reconstruction RunCommand::reconstruct(engine::Sequence& sequence,
+                                               const Console& console) const {
+  std::error_code ignored;
+  if (rendering.resume &&
+      std::filesystem::exists(std::filesystem::path(output) / "map.bin", ignored)) {
+    console.info("resuming with the reconstruction in " + output);
+    return engine::read_reconstruction(output);
+  }
+  engine::Reconstruction reconstruction =
+      track_with_progress(sequence, tracking.resolve(common, input), console);
+  engine::write_reconstruction(reconstruction, output);
+  return reconstruction;
+}
+
+void RunCommand::write_report(const engine::Reconstruction& reconstruction,
+                              const engine::RenderSequenceResult& result,
+                              const engine::Sequence& sequence) const {
+  engine::ReportInput report;
+  report.title = sequence.name();
+  for (const auto& [frame, picture] : result.stills) {
+    report.stills.push_back({"frame " + std::to_string(frame), picture});
+  }
+  report.facts.emplace_back("Scene", rendering.scene.empty() ? "built-in" : rendering.scene);
+  report.facts.emplace_back("Content in view", std::to_string(result.with_content) + " of " +
+                                                   std::to_string(result.frames) + " frames");
+  report.warnings = result.warnings;
+  const std::filesystem::path folder(output);
+  for (const char* file : {"augmented.mp4", "scene.glb", "planes.json"}) {
+    if (std::filesystem::exists(folder / file)) report.links.emplace_back(file);
+  }
+  engine::write_report(reconstruction, report, folder / "report.html");
+}
+
+int RunCommand::run() const {
+  const Console console = common.console();
+  const std::unique_ptr<engine::Sequence> sequence = input.open();
+  const auto scene = read_scene(rendering, *sequence);
+  engine::make_folder(output);
+  const engine::Reconstruction reconstruction = reconstruct(*sequence, console);
+  const TrackingReport tracked = report_tracking(reconstruction, tracking.causal);
+  console.info(tracked.line);
+  const engine::RenderSequenceOptions options = resolve(rendering, common, input, tracking.causal);
+  engine::RenderSequenceResult result;
+  try {
+    result = render_with_progress(*sequence, reconstruction, scene, options, output, console);
+  } catch (const engine::UserError& error) {
+    // Where tracking failed the content has no place: that is a poor result, not a bad scene.
+    if (!tracked.poor) throw;
+    console.warning(error.what());
+    result = render_with_progress(*sequence, reconstruction, engine::SceneFile{}, options, output,
+                                  console);
+  }
+  write_report(reconstruction, result, *sequence);
+  report_rendering(result, output, console);
+  if (tracked.poor) console.warning("tracking was lost for more than half of the frames");
+  return tracked.poor || !result.unreadable.empty() ? kPoorResult : kDone;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("run", "Track a sequence and render objects into it");
+  auto options = std::make_shared<RunCommand>();
+  options->output = "out/run";
+  add_input_options(*command, options->input);
+  command->add_option("-o,--output", options->output, "Folder to write")->capture_default_str();
+  add_rendering_options(*command, options->rendering);
+  add_tracking_options(*command, options->tracking);
+  add_common_options(*command, options->common);
+  command->callback([options, &action] { action = [options] { return options->run(); }; });
+}
+
+}  // namespace planecast::app

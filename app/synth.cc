@@ -1,0 +1,64 @@
+#include <memory>
+
+#include "commands.h"
+#include "engine/sequence/synth.h"
+#include "engine/user_error.h"
+#include "options.h"
+
+namespace planecast::app {
+namespace {
+
+struct SynthCommand {
+  CommonOptions common;
+  engine::SynthOptions synth;
+  std::string output;
+  bool list = false;
+  bool no_effects = false;
+
+  int run() {
+    const Console console = common.console();
+    if (list) {
+      for (const std::string& name : engine::synthetic_scene_names()) console.result(name);
+      return kDone;
+    }
+    if (synth.name.empty()) throw engine::UserError("synth: no scene named; --list shows them");
+    if (output.empty()) throw engine::UserError("synth: no folder to write; give one with -o");
+    synth.seed = common.seed;
+    synth.effects = !no_effects;
+    {
+      ProgressBar bar(console, "making");
+      engine::write_synthetic(synth, output,
+                              [&bar](int done, int total) { bar.update(done, total); });
+    }
+    console.result(output);
+    return kDone;
+  }
+};
+
+}  // namespace
+
+void add_synth(CLI::App& app, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("synth", "Make a sequence with exact poses, depth and planes");
+  auto options = std::make_shared<SynthCommand>();
+  command->add_option("name", options->synth.name, "Scene");
+  command->add_option("-o,--output", options->output, "Folder to write");
+  command->add_flag("--list", options->list, "Print the scenes' names");
+  command->add_option("--width", options->synth.width, "Pixels")
+      ->check(CLI::Range(32, 4096))
+      ->capture_default_str();
+  command->add_option("--height", options->synth.height, "Pixels")
+      ->check(CLI::Range(32, 4096))
+      ->capture_default_str();
+  command->add_option("--count", options->synth.frames, "Frames (default: the scene's own number)")
+      ->check(CLI::Range(1, 100000));
+  command->add_option("--fps", options->synth.fps, "Frames per second")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
+  command->add_flag("--no-effects", options->no_effects,
+                    "No noise, blur, exposure drift or depth holes");
+  add_common_options(*command, options->common);
+  command->callback([options, &action] { action = [options] { return options->run(); }; });
+}
+
+}  // namespace planecast::app

@@ -1,0 +1,233 @@
+#include "engine/evaluate/overlay.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "engine/evaluate/patch.h"
+#include "engine/evaluate/plane_matching.h"
+
+namespace planecast::engine {
+namespace {
+
+/// Estimated points nearer to the camera than this are not drawn.
+constexpr double kNearest = 1e-6;
+
+/// A frame for which both poses are known.
+struct View {
+  int frame_index = 0;
+  slam::Pose estimate;  ///< world_from_cam
+  slam::Pose truth;
+};
+
+/// One grid point in the true world and its two counterparts in the estimated map.
+struct GridPoint {
+  Eigen::Vector3d truth;
+  Eigen::Vector3d normal;  ///< of the true plane
+  std::optional<Eigen::Vector3d> aligned;
+  std::optional<Eigen::Vector3d> tapped;
+};
+
+using Errors = std::vector<std::optional<Eigen::Vector2d>>;  ///< of one point by view
+
+std::vector<View> common_views(const Reconstruction& estimate,
+                               const std::vector<TimedPose>& truth_poses,
+                               const OverlayOptions& options) {
+  std::vector<TimedPose> poses;
+  std::vector<int> indices;
+  for (const FrameRecord& frame : estimate.frames) {
+    const auto& pose = options.causal ? frame.causal_world_from_cam : frame.world_from_cam;
+    if (!pose) continue;
+    poses.push_back({frame.timestamp, *pose});
+    indices.push_back(frame.index);
+  }
+  std::vector<View> views;
+  for (const auto& [e, t] :
+       associate(poses, truth_poses, options.planes.trajectory.max_difference_s)) {
+    views.push_back({indices[static_cast<std::size_t>(e)],
+                     poses[static_cast<std::size_t>(e)].world_from_cam,
+                     truth_poses[static_cast<std::size_t>(t)].world_from_cam});
+  }
+  return views;
+}
+
+slam::Similarity inverse(const slam::Similarity& s) {
+  slam::Similarity inverted;
+  inverted.scale = 1.0 / s.scale;
+  inverted.rotation = s.rotation.transpose();
+  inverted.translation = -inverted.scale * (inverted.rotation * s.translation);
+  return inverted;
+}
+
+bool is_seen(const GridPoint& point, const View& view, const slam::Camera& camera) {
+  return point.normal.dot(view.truth.translation() - point.truth) > 0.0 &&
+         is_in_view(view.truth, camera, point.truth);
+}
+
+/// Where the ray of the true pixel hits the estimated plane.
+std::optional<Eigen::Vector3d> hit(const GridPoint& point, const View& view,
+                                   const slam::Camera& true_camera, const slam::Camera& camera,
+                                   const PlaneRecord& plane) {
+  const Eigen::Vector2d pixel = true_camera.project(view.truth.inverse() * point.truth);
+  const Eigen::Vector3d direction = view.estimate.linear() * camera.ray(pixel);
+  const double slope = plane.normal.dot(direction);
+  if (std::abs(slope) < 1e-9) return std::nullopt;
+  const double along = -(plane.normal.dot(view.estimate.translation()) + plane.offset) / slope;
+  if (along <= kNearest) return std::nullopt;
+  return view.estimate.translation() + along * direction;
+}
+
+std::vector<GridPoint> lay_grid(const PlaneRecord& truth, const PlaneRecord& estimate,
+                                const slam::Similarity& estimate_from_truth,
+                                const std::vector<View>& views, const slam::Camera& true_camera,
+                                const slam::Camera& camera, int cells) {
+  std::vector<GridPoint> grid;
+  for (const Eigen::Vector3d& position : Patch(truth).grid(cells)) {
+    GridPoint point{position, truth.normal, std::nullopt, std::nullopt};
+    const Eigen::Vector3d over = estimate_from_truth * position;
+    point.aligned = over - (estimate.normal.dot(over) + estimate.offset) * estimate.normal;
+    grid.push_back(point);
+  }
+  const auto sees_any = [&](const View& view) {
+    return std::any_of(grid.begin(), grid.end(),
+                       [&](const GridPoint& point) { return is_seen(point, view, true_camera); });
+  };
+  const auto first = std::find_if(views.begin(), views.end(), sees_any);
+  if (first == views.end()) return grid;
+  for (GridPoint& point : grid) {
+    if (is_seen(point, *first, true_camera)) {
+      point.tapped = hit(point, *first, true_camera, camera, estimate);
+    }
+  }
+  return grid;
+}
+
+Errors errors_of(const GridPoint& point, const std::optional<Eigen::Vector3d>& anchor,
+                 const std::vector<View>& views, const slam::Camera& true_camera,
+                 const slam::Camera& camera) {
+  Errors errors(views.size());
+  if (!anchor) return errors;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (!is_seen(point, views[i], true_camera)) continue;
+    const Eigen::Vector3d drawn = views[i].estimate.inverse() * *anchor;
+    if (drawn.z() <= kNearest) continue;
+    errors[i] = camera.project(drawn) - true_camera.project(views[i].truth.inverse() * point.truth);
+  }
+  return errors;
+}
+
+/// Collects the errors of every grid point under one way to anchor.
+class DriftCollector {
+ public:
+  explicit DriftCollector(const std::vector<View>& views)
+      : views_(views), sum_of_squares_(views.size(), 0.0), count_(views.size(), 0) {}
+
+  void add(const Errors& errors) {
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+      if (!errors[i]) continue;
+      drift_.push_back(errors[i]->norm());
+      sum_of_squares_[i] += errors[i]->squaredNorm();
+      ++count_[i];
+      if (i < 2 || !errors[i - 1] || !errors[i - 2]) continue;
+      if (views_[i].frame_index - views_[i - 2].frame_index != 2) continue;
+      jitter_.push_back((*errors[i] - 2.0 * *errors[i - 1] + *errors[i - 2]).norm());
+    }
+  }
+  DriftFigures figures() const { return {statistics_of(drift_), statistics_of(jitter_)}; }
+  int count(std::size_t view) const { return count_[view]; }
+  double rms(std::size_t view) const {
+    return count_[view] > 0 ? std::sqrt(sum_of_squares_[view] / count_[view]) : 0.0;
+  }
+
+ private:
+  const std::vector<View>& views_;
+  std::vector<double> drift_;
+  std::vector<double> jitter_;
+  std::vector<double> sum_of_squares_;
+  std::vector<int> count_;
+};
+
+const PlaneRecord* plane_of(const std::vector<PlaneRecord>& planes, int id) {
+  const auto found = std::find_if(planes.begin(), planes.end(),
+                                  [id](const PlaneRecord& plane) { return plane.id == id; });
+  return found == planes.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::optional<OverlayResult> evaluate_overlay(const Reconstruction& estimate,
+                                              const std::vector<PlaneRecord>& truth,
+                                              const std::vector<TimedPose>& truth_poses,
+                                              const slam::Camera& true_camera,
+                                              const OverlayOptions& options) {
+  const auto matches = evaluate_planes(estimate, truth, truth_poses, true_camera, options.planes);
+  if (!matches) return std::nullopt;
+  const std::vector<View> views = common_views(estimate, truth_poses, options);
+  const slam::Similarity estimate_from_truth = inverse(matches->trajectory.truth_from_estimate);
+  OverlayResult result;
+  DriftCollector aligned(views);
+  DriftCollector tapped(views);
+  for (const TruePlaneRow& row : matches->rows) {
+    // A scale of 0 (a truth that never moves) cannot be undone.
+    if (!row.matched || !(matches->trajectory.truth_from_estimate.scale > 0.0)) continue;
+    const PlaneRecord* true_plane = plane_of(truth, row.truth_id);
+    const PlaneRecord* plane = plane_of(estimate.planes, row.estimate_id);
+    ++result.planes;
+    for (const GridPoint& point : lay_grid(*true_plane, *plane, estimate_from_truth, views,
+                                           true_camera, estimate.camera, options.grid_cells)) {
+      aligned.add(errors_of(point, point.aligned, views, true_camera, estimate.camera));
+      tapped.add(errors_of(point, point.tapped, views, true_camera, estimate.camera));
+    }
+  }
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (aligned.count(i) == 0) continue;
+    ++result.frames;
+    result.per_frame.push_back(
+        {views[i].frame_index, aligned.count(i), aligned.rms(i), tapped.rms(i)});
+  }
+  result.aligned = aligned.figures();
+  result.tapped = tapped.figures();
+  return result;
+}
+
+std::string format_table(const OverlayResult& result) {
+  std::string text =
+      fmt::format("{} planes, {} frames\n{:10} {:>10} {:>10} {:>10} {:>12} {:>12}\n", result.planes,
+                  result.frames, "drift px", "rms", "p95", "max", "jitter rms", "jitter p95");
+  const auto row = [](const char* name, const DriftFigures& figures) {
+    return fmt::format("{:10} {:>10.3f} {:>10.3f} {:>10.3f} {:>12.3f} {:>12.3f}\n", name,
+                       figures.drift_px.rms, figures.drift_px.p95, figures.drift_px.max,
+                       figures.jitter_px.rms, figures.jitter_px.p95);
+  };
+  if (result.planes == 0) return "no plane of the estimate matches a true one\n";
+  return text + row("aligned", result.aligned) + row("tapped", result.tapped);
+}
+
+nlohmann::ordered_json to_json(const OverlayResult& result) {
+  const auto figures = [](const DriftFigures& from) {
+    nlohmann::ordered_json json;
+    json["drift_px"] = to_json(from.drift_px);
+    json["jitter_px"] = to_json(from.jitter_px);
+    return json;
+  };
+  nlohmann::ordered_json json;
+  json["planes"] = result.planes;
+  json["frames"] = result.frames;
+  json["aligned"] = figures(result.aligned);
+  json["tapped"] = figures(result.tapped);
+  json["per_frame"] = nlohmann::ordered_json::array();
+  for (const FrameDrift& frame : result.per_frame) {
+    nlohmann::ordered_json row;
+    row["frame"] = frame.frame_index;
+    row["points"] = frame.points;
+    row["aligned_rms_px"] = frame.aligned_rms_px;
+    row["tapped_rms_px"] = frame.tapped_rms_px;
+    json["per_frame"].push_back(std::move(row));
+  }
+  return json;
+}
+
+}  // namespace planecast::engine

@@ -1,0 +1,103 @@
+#include "engine/output/summary.h"
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "engine/output/atomic_file.h"
+
+namespace planecast::engine {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json camera_json(const slam::Camera& camera) {
+  Json json;
+  json["model"] = camera.lens == slam::LensModel::kFisheye ? "fisheye" : "pinhole";
+  json["width"] = camera.width;
+  json["height"] = camera.height;
+  json["fx"] = camera.fx;
+  json["fy"] = camera.fy;
+  json["cx"] = camera.cx;
+  json["cy"] = camera.cy;
+  json["distortion"] = camera.distortion;
+  json["guessed"] = camera.guessed;
+  return json;
+}
+
+double share(int part, int whole) { return whole > 0 ? static_cast<double>(part) / whole : 0.0; }
+
+Json frames_json(const Summary& summary) {
+  Json json;
+  json["count"] = summary.frames;
+  json["tracked"] = summary.tracked;
+  json["tracked_share"] = share(summary.tracked, summary.frames);
+  json["localised"] = summary.localised;
+  json["localised_share"] = share(summary.localised, summary.frames);
+  json["lost"] = summary.lost;
+  json["unreadable"] = summary.unreadable;
+  json["until_initialised"] = summary.frames_until_initialised;
+  json["first_tracked"] = summary.first_tracked_frame;
+  json["mean_inliers"] = summary.mean_inliers;
+  return json;
+}
+
+}  // namespace
+
+Summary summarise(const Reconstruction& reconstruction) {
+  Summary summary;
+  summary.frames = static_cast<int>(reconstruction.frames.size());
+  summary.keyframes = static_cast<int>(reconstruction.keyframes.size());
+  summary.planes = static_cast<int>(reconstruction.planes.size());
+  summary.points = static_cast<int>(reconstruction.points.size());
+  const slam::Pose* previous = nullptr;
+  double inliers = 0.0;
+  for (const FrameRecord& frame : reconstruction.frames) {
+    if (frame.state == "lost") ++summary.lost;
+    if (frame.state == "unreadable") ++summary.unreadable;
+    if (frame.causal_world_from_cam) {
+      if (summary.tracked == 0) summary.first_tracked_frame = frame.index;
+      ++summary.tracked;
+    } else if (summary.tracked == 0) {
+      ++summary.frames_until_initialised;
+    }
+    if (!frame.world_from_cam) continue;
+    ++summary.localised;
+    inliers += frame.inliers;
+    if (previous != nullptr) {
+      summary.path_length += (frame.world_from_cam->translation() - previous->translation()).norm();
+    }
+    previous = &*frame.world_from_cam;
+  }
+  if (summary.localised > 0) summary.mean_inliers = inliers / summary.localised;
+  for (const MapPoint& point : reconstruction.points) {
+    if (point.plane != slam::kNone) ++summary.points_on_planes;
+  }
+  return summary;
+}
+
+Json summary_json(const Reconstruction& reconstruction) {
+  const Summary summary = summarise(reconstruction);
+  std::map<std::string, int> classes;
+  for (const PlaneRecord& plane : reconstruction.planes) ++classes[plane.plane_class];
+  Json json;
+  json["mode"] = reconstruction.mode;
+  json["segmentation"] = reconstruction.segmentation;
+  json["units"] = reconstruction.metric ? "metres" : "map";
+  json["camera"] = camera_json(reconstruction.camera);
+  json["frames"] = frames_json(summary);
+  json["keyframes"] = summary.keyframes;
+  json["points"] = summary.points;
+  json["points_on_planes"] = summary.points_on_planes;
+  json["planes"] = summary.planes;
+  json["planes_by_class"] = classes;
+  json["median_depth"] = reconstruction.median_depth;
+  json["path_length"] = summary.path_length;
+  json["warnings"] = reconstruction.warnings;
+  return json;
+}
+
+void write_summary(const Reconstruction& reconstruction, const std::filesystem::path& path) {
+  write_file(path, summary_json(reconstruction).dump(1) + "\n");
+}
+
+}  // namespace planecast::engine

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "engine/pipeline/reconstruction.h"
+
+namespace planecast::engine {
+
+/// Counts of a run, without times of computing: repeatable.
+struct Summary {
+  int frames = 0;
+  int tracked = 0;    ///< with a pose when the frame came (causal)
+  int localised = 0;  ///< with a final pose
+  int lost = 0;
+  int unreadable = 0;
+  int first_tracked_frame = -1;      ///< index; -1 = never
+  int frames_until_initialised = 0;  ///< frames before the first causal pose; all of them if none
+  int keyframes = 0;
+  int planes = 0;
+  int points = 0;
+  int points_on_planes = 0;
+  double mean_inliers = 0.0;  ///< of frames with a final pose
+  double path_length = 0.0;   ///< of the final camera positions, map units or metres
+};
+
+Summary summarise(const Reconstruction& reconstruction);
+
+/// summary.json: mode, segmentation, units, camera, the counts above, planes by class, warnings.
+nlohmann::ordered_json summary_json(const Reconstruction& reconstruction);
+void write_summary(const Reconstruction& reconstruction, const std::filesystem::path& path);
+
+}  // namespace planecast::engine

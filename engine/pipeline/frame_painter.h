@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+
+#include "engine/look/grain.h"
+#include "engine/look/lens_warp.h"
+#include "engine/look/light.h"
+#include "engine/pipeline/reconstruction.h"
+#include "engine/scene/content.h"
+#include "render/renderer.h"
+#include "slam/data/frame.h"
+
+namespace planecast::engine {
+
+struct PainterOptions {
+  std::filesystem::path shader_dir;
+  Occlusion occlusion = Occlusion::kPlanes;
+  bool shadows = true;
+  bool follow_exposure = true;
+  bool match_blur = true;
+  bool match_grain = true;
+  std::uint64_t seed = 1;
+};
+
+/// Milliseconds of one painted frame.
+struct PaintTimes {
+  double look_ms = 0.0;       ///< exposure and depth
+  double draw_ms = 0.0;       ///< the renderer
+  double composite_ms = 0.0;  ///< blur, grain, lens and compositing
+};
+
+/// Draws the content into pictures: layer by the renderer, then everything that makes it belong to
+/// the picture. Each picture depends on its own frame alone, so that any of them can be made again.
+/// The renderer inside belongs to the thread that made the painter.
+class FramePainter {
+ public:
+  /// Throws std::runtime_error when no rendering context can be made.
+  FramePainter(const Reconstruction& reconstruction, const Content& content,
+               const SceneLight& light, const PainterOptions& options);
+
+  /// Returns whether anything was drawn. `frame.image` stays as it is; `picture` is CV_8UC3 BGR and
+  /// holds the frame's picture. `time_s` runs the animations.
+  bool paint(const slam::FrameInput& frame, const slam::Pose& world_from_cam, double time_s,
+             cv::Mat& picture);
+  const PaintTimes& times() const { return times_; }
+  std::string renderer_description() const { return renderer_.description(); }
+
+ private:
+  void set_light(double gain);
+  void set_depth(const cv::Mat& raw_depth);
+
+  const Reconstruction& reconstruction_;
+  PainterOptions options_;
+  SceneLight light_;
+  LensWarp warp_;
+  Grain grain_;
+  render::Renderer renderer_;
+  render::LayerScene scene_;
+  render::ImageF depth_;
+  PaintTimes times_;
+};
+
+/// 8-bit BGR copy of a grey or colour image.
+cv::Mat to_bgr(const cv::Mat& image);
+
+}  // namespace planecast::engine

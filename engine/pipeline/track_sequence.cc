@@ -1,0 +1,285 @@
+#include "engine/pipeline/track_sequence.h"
+
+#include <algorithm>
+#include <future>
+#include <memory>
+#include <utility>
+
+#include "engine/pipeline/map_to_records.h"
+#include "engine/scene/plane_classes.h"
+#include "engine/user_error.h"
+#include "slam/system.h"
+
+namespace planecast::engine {
+namespace {
+
+bool use_depth(const Sequence& sequence, const std::string& mode) {
+  if (mode == "auto") return sequence.has_depth();
+  if (mode == "mono") return false;
+  if (mode != "rgbd") throw UserError("--mode " + mode + ": expected mono, rgbd or auto");
+  if (!sequence.has_depth()) {
+    throw UserError(sequence.path().string() + ": --mode rgbd needs depth, and there is none");
+  }
+  return true;
+}
+
+std::unique_ptr<slam::PlaneSegmenter> choose_segmenter(const Sequence& sequence, bool rgbd,
+                                                       const std::string& wish) {
+  std::string kind = wish;
+  if (kind == "auto") kind = sequence.has_labels() ? "masks" : rgbd ? "depth" : "none";
+  if (kind == "none") return slam::make_no_segmenter();
+  if (kind == "masks") {
+    if (!sequence.has_labels()) {
+      throw UserError(sequence.path().string() + ": --segmentation masks needs mask.txt");
+    }
+    return slam::make_mask_segmenter();
+  }
+  if (kind == "depth") {
+    if (!rgbd) throw UserError("--segmentation depth needs --mode rgbd");
+    return slam::make_depth_segmenter(sequence.camera());
+  }
+  throw UserError("--segmentation " + kind + ": expected auto, masks, depth or none");
+}
+
+slam::SystemOptions system_options(const TrackSequenceOptions& options, bool rgbd) {
+  slam::SystemOptions result;
+  result.rgbd = rgbd;
+  result.seed = options.seed;
+  result.orb.features = options.features;
+  result.threads = options.threads;
+  if (options.plane_merge == "paper") {
+    result.mapping.planes.merge = slam::PlaneMerge::kPaper;
+  } else if (options.plane_merge != "default") {
+    throw UserError("--plane-merge " + options.plane_merge + ": expected default or paper");
+  }
+  return result;
+}
+
+/// Reads and prepares frames one ahead of the one in use, on a second thread where allowed. Whether the
+/// map was initialised is known two frames late, always, so that threads change nothing.
+class FramesAhead {
+ public:
+  FramesAhead(Sequence& sequence, const slam::System& system, bool threaded)
+      : sequence_(sequence), system_(system), threaded_(threaded) {}
+
+  struct Prepared {
+    std::optional<slam::ImageFeatures> image;  ///< nothing: unreadable
+    std::string error;
+    double milliseconds = 0.0;
+  };
+
+  void request(int index, bool initialised) {
+    next_ = std::async(threaded_ ? std::launch::async : std::launch::deferred,
+                       [this, index, initialised] { return prepare(index, initialised); });
+  }
+  Prepared take() { return next_.get(); }
+
+ private:
+  Prepared prepare(int index, bool initialised) const {
+    Prepared prepared;
+    try {
+      prepared.image = system_.prepare(sequence_.read(index), initialised);
+    } catch (const UserError& error) {
+      prepared.error = error.what();
+    }
+    return prepared;
+  }
+
+  Sequence& sequence_;
+  const slam::System& system_;
+  bool threaded_;
+  std::future<Prepared> next_;
+};
+
+/// One frame of the first pass, as the second needs it.
+struct Tracked {
+  slam::KeyframeId reference = slam::kNone;
+  slam::Pose cam_from_reference = slam::Pose::Identity();
+};
+
+class TwoPassTracker {
+ public:
+  TwoPassTracker(Sequence& sequence, const TrackSequenceOptions& options, const Progress& progress)
+      : sequence_(sequence),
+        options_(options),
+        progress_(progress),
+        rgbd_(use_depth(sequence, options.mode)),
+        system_(system_options(options, rgbd_), sequence.camera(),
+                choose_segmenter(sequence, rgbd_, options.segmentation)),
+        first_(sequence.first_frame()),
+        count_(sequence.end_frame() - sequence.first_frame()) {
+    frames_.resize(static_cast<std::size_t>(count_));
+    tracked_.resize(static_cast<std::size_t>(count_));
+    times_.resize(static_cast<std::size_t>(count_));
+  }
+
+  Reconstruction run() {
+    first_pass();
+    for (const auto& [stage, ms] : system_.finish().mapping_times) {
+      mapping_times_[stage].push_back(ms);
+    }
+    take_over_references();
+    if (!options_.causal) second_pass();
+    return records();
+  }
+
+ private:
+  int total_steps() const { return options_.causal ? count_ : 2 * count_; }
+  void first_pass();
+  void second_pass();
+  void take_over_references();
+  void localise_run(int begin, int end, int step, int& done);
+  bool localise_frame(int position, const std::optional<slam::Pose>& prior,
+                      const slam::ImageFeatures& image);
+  void record_first(int position, const slam::FrameTrack& track);
+  Reconstruction records();
+
+  Sequence& sequence_;
+  const TrackSequenceOptions& options_;
+  const Progress& progress_;
+  bool rgbd_;
+  slam::System system_;
+  int first_;
+  int count_;
+  std::vector<FrameRecord> frames_;
+  std::vector<Tracked> tracked_;
+  std::vector<StageTimes> times_;
+  std::map<std::string, std::vector<double>> mapping_times_;
+};
+
+void TwoPassTracker::record_first(int position, const slam::FrameTrack& track) {
+  const auto p = static_cast<std::size_t>(position);
+  FrameRecord& record = frames_[p];
+  record.state = track.state == slam::TrackState::kTracked ? "tracked"
+                 : track.state == slam::TrackState::kLost  ? "lost"
+                                                           : "not-initialised";
+  record.reason = track.reason;
+  record.inliers = track.inliers;
+  times_[p].insert(times_[p].end(), track.times.begin(), track.times.end());
+  for (const auto& [stage, ms] : track.mapping_times) mapping_times_[stage].push_back(ms);
+  if (track.restarted) {
+    // The thrown-away map's poses mean nothing in the new one.
+    for (std::size_t q = 0; q < p; ++q) {
+      tracked_[q] = {};
+      frames_[q].causal_world_from_cam.reset();
+    }
+  }
+  if (!track.cam_from_world) return;
+  record.causal_world_from_cam = track.cam_from_world->inverse();
+  tracked_[p] = {track.reference, track.cam_from_reference};
+}
+
+void TwoPassTracker::first_pass() {
+  FramesAhead ahead(sequence_, system_, options_.threads > 1);
+  ahead.request(first_, false);
+  for (int position = 0; position < count_; ++position) {
+    FramesAhead::Prepared prepared = ahead.take();
+    const bool initialised = system_.initialised();
+    if (position + 1 < count_) ahead.request(first_ + position + 1, initialised);
+    FrameRecord& record = frames_[static_cast<std::size_t>(position)];
+    record.index = first_ + position;
+    record.timestamp =
+        prepared.image ? prepared.image->timestamp : sequence_.timestamp(record.index);
+    if (prepared.image) {
+      record_first(position, system_.track(*prepared.image));
+    } else {
+      if (!options_.skip_unreadable) throw UserError(prepared.error);
+      record.state = "unreadable";
+      record.reason = "not readable";
+    }
+    if (progress_) progress_(position + 1, total_steps());
+  }
+}
+
+/// Poses of the first pass, carried along with the keyframes as the map changed since.
+void TwoPassTracker::take_over_references() {
+  for (int position = 0; position < count_; ++position) {
+    const auto p = static_cast<std::size_t>(position);
+    if (tracked_[p].reference == slam::kNone) continue;
+    const slam::Pose cam_from_world =
+        tracked_[p].cam_from_reference * system_.map().keyframe_pose(tracked_[p].reference);
+    frames_[p].world_from_cam = cam_from_world.inverse();
+  }
+}
+
+bool TwoPassTracker::localise_frame(int position, const std::optional<slam::Pose>& prior,
+                                    const slam::ImageFeatures& image) {
+  const std::optional<slam::PoseEstimate> estimate = system_.localise(image, prior);
+  if (!estimate) return false;
+  FrameRecord& record = frames_[static_cast<std::size_t>(position)];
+  record.world_from_cam = estimate->cam_from_world.inverse();
+  record.inliers = estimate->inliers;
+  if (record.state != "tracked") record.state = "localised";
+  return true;
+}
+
+/// Localises the frames begin, begin + step, ... before end; those without a pose of their own start
+/// from the frame before them in this order.
+void TwoPassTracker::localise_run(int begin, int end, int step, int& done) {
+  FramesAhead ahead(sequence_, system_, options_.threads > 1);
+  if (begin != end) ahead.request(first_ + begin, true);
+  std::optional<slam::Pose> previous;
+  for (int position = begin; position != end; position += step) {
+    FramesAhead::Prepared prepared = ahead.take();
+    if (position + step != end) ahead.request(first_ + position + step, true);
+    const FrameRecord& record = frames_[static_cast<std::size_t>(position)];
+    std::optional<slam::Pose> prior = previous;
+    if (record.world_from_cam) prior = record.world_from_cam->inverse();
+    if (prepared.image && localise_frame(position, prior, *prepared.image)) {
+      previous = record.world_from_cam->inverse();
+    } else if (record.world_from_cam) {
+      previous = record.world_from_cam->inverse();
+    }
+    if (progress_) progress_(count_ + std::min(++done, count_), total_steps());
+  }
+}
+
+void TwoPassTracker::second_pass() {
+  if (system_.map().keyframes.empty()) return;
+  const auto posed = [](const FrameRecord& record) { return record.world_from_cam.has_value(); };
+  const auto first_posed = std::find_if(frames_.begin(), frames_.end(), posed);
+  if (first_posed == frames_.end()) return;
+  const auto start = static_cast<int>(first_posed - frames_.begin());
+  int done = 0;
+  localise_run(start, count_, 1, done);
+  // Backwards from the start: what came before the initialisation.
+  localise_run(start, -1, -1, done);
+  // What is still missing after a loss is tried from its later side.
+  for (int position = count_ - 1; position > start; --position) {
+    if (frames_[static_cast<std::size_t>(position)].world_from_cam ||
+        frames_[static_cast<std::size_t>(position)].state == "unreadable") {
+      continue;
+    }
+    if (position + 1 == count_ || !frames_[static_cast<std::size_t>(position + 1)].world_from_cam) {
+      continue;
+    }
+    const slam::Pose prior =
+        frames_[static_cast<std::size_t>(position + 1)].world_from_cam->inverse();
+    localise_frame(position, prior, system_.prepare(sequence_.read(first_ + position), true));
+  }
+}
+
+Reconstruction TwoPassTracker::records() {
+  Reconstruction result = map_to_records(system_.map(), system_.camera(), rgbd_);
+  result.mode = rgbd_ ? "rgbd" : "mono";
+  result.frames = std::move(frames_);
+  result.frame_times = std::move(times_);
+  result.mapping_times = std::move(mapping_times_);
+  result.warnings = sequence_.warnings();
+  for (FrameRecord& record : result.frames) {
+    if (record.world_from_cam) record.reason.clear();
+  }
+  UpOptions up_options;
+  up_options.known_up = options_.up;
+  classify_planes(result, up_options);
+  return result;
+}
+
+}  // namespace
+
+Reconstruction track_sequence(Sequence& sequence, const TrackSequenceOptions& options,
+                              const Progress& progress) {
+  return TwoPassTracker(sequence, options, progress).run();
+}
+
+}  // namespace planecast::engine

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "engine/pipeline/reconstruction.h"
+#include "engine/sequence/sequence.h"
+
+namespace planecast::engine {
+
+struct TrackSequenceOptions {
+  std::string mode = "auto";          ///< mono | rgbd | auto (rgbd where there is depth)
+  std::string segmentation = "auto";  ///< auto | masks | depth | none (auto: masks, else depth, else none)
+  bool causal = false;                ///< no second pass
+  int threads = 2;                    ///< changes no result
+  std::uint64_t seed = 1;
+  bool skip_unreadable = false;
+  std::optional<Eigen::Vector3d> up;  ///< unit, world; estimated where not given
+  std::string plane_merge = "default";  ///< default | paper
+  int features = 1000;
+};
+
+/// Called with (done, total) after each frame of either pass.
+using Progress = std::function<void(int done, int total)>;
+
+/// SLAM over the whole sequence; then, unless causal, every frame is localised against the finished map.
+/// Throws UserError for bad options and for a frame that cannot be read (without skip_unreadable).
+Reconstruction track_sequence(Sequence& sequence, const TrackSequenceOptions& options,
+                              const Progress& progress);
+
+}  // namespace planecast::engine

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <memory>
+#include <opencv2/core.hpp>
+
+#include "render/scene.h"
+
+namespace planecast::engine {
+
+struct TurntableOptions {
+  int views = 8;           ///< evenly around the vertical axis, the first from the front
+  int view_size_px = 320;  ///< side of one square view
+  int animation = -1;      ///< -1: rest pose
+  double time_s = 0.0;
+  double elevation_deg = 20.0;  ///< of the camera over the horizon
+};
+
+/// The model on a light ground, one view beside the other in rows of at most four, CV_8UC3 BGR.
+cv::Mat draw_turntable(const std::shared_ptr<const render::Model>& model,
+                       const TurntableOptions& options);
+
+}  // namespace planecast::engine

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/pipeline/reconstruction.h"
+#include "engine/scene/placement.h"
+#include "engine/scene/scene_file.h"
+#include "render/scene.h"
+
+namespace planecast::engine {
+
+/// A scene file's object with its model loaded and its place found.
+struct ContentItem {
+  std::shared_ptr<const render::Model> model;
+  PlacedObject placed;
+  int animation = -1;         ///< -1: rest pose
+  double longest_side = 0.0;  ///< world units
+  double footprint = 0.0;     ///< radius of a circle about the contact that holds the model's base
+};
+
+struct Content {
+  std::vector<ContentItem> items;
+  std::vector<std::string> warnings;  ///< of the models, each with its file
+};
+
+/// What can be known before tracking: every model is readable and has its animation, every frame
+/// that is named lies in first..end-1. Throws UserError like load_content.
+void check_content(const SceneFile& scene, int first_frame, int end_frame);
+
+/// Loads every model once and places every object. Throws UserError naming the file (and line) for
+/// a model that cannot be read, an animation it has not, and places that are not there.
+Content load_content(const Reconstruction& reconstruction, const SceneFile& scene, bool causal);
+
+}  // namespace planecast::engine

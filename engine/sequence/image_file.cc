@@ -1,0 +1,105 @@
+#include "engine/sequence/image_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdint>
+#include <fstream>
+#include <opencv2/core/utils/logger.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <vector>
+
+extern "C" {
+#include <libavutil/log.h>
+}
+
+#include "engine/sequence/image_check.h"
+#include "engine/sequence/labels.h"
+#include "engine/user_error.h"
+
+namespace planecast::engine {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<std::uint8_t> read_bytes(const fs::path& file) {
+  std::error_code error;
+  if (!fs::exists(file, error)) throw UserError(file.string() + ": no such file");
+  if (!fs::is_regular_file(file, error)) throw UserError(file.string() + ": not a file");
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw UserError(file.string() + ": cannot be opened");
+  std::vector<std::uint8_t> bytes(fs::file_size(file, error));
+  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  return bytes;
+}
+
+cv::Mat decode(const fs::path& file, int flags) {
+  const std::vector<std::uint8_t> bytes = read_bytes(file);
+  const ImageCheck check = check_image_file(bytes);
+  if (std::max(check.width, check.height) > kMaxImageSide) {
+    throw UserError(fmt::format("{}: {}x{} pixels are more than {} a side", file.string(),
+                                check.width, check.height, kMaxImageSide));
+  }
+  if (!check.damage.empty()) throw UserError(fmt::format("{}: {}", file.string(), check.damage));
+  cv::Mat image;
+  try {
+    image = cv::imdecode(bytes, flags);
+  } catch (const cv::Exception&) {
+    image.release();
+  }
+  if (image.empty()) throw UserError(file.string() + ": cannot be decoded as an image");
+  if (std::max(image.cols, image.rows) > kMaxImageSide) {
+    throw UserError(fmt::format("{}: {}x{} pixels are more than {} a side", file.string(),
+                                image.cols, image.rows, kMaxImageSide));
+  }
+  return image;
+}
+
+void no_message(void*, int, const char*, va_list) {}
+
+}  // namespace
+
+bool has_image_suffix(const fs::path& file) {
+  std::string suffix = file.extension().string();
+  std::transform(suffix.begin(), suffix.end(), suffix.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return suffix == ".png" || suffix == ".jpg" || suffix == ".jpeg" || suffix == ".bmp" ||
+         suffix == ".tif" || suffix == ".tiff";
+}
+
+cv::Mat read_color_image(const fs::path& file) { return decode(file, cv::IMREAD_COLOR); }
+
+cv::Mat read_depth_image(const fs::path& file, double depth_factor) {
+  const cv::Mat raw = decode(file, cv::IMREAD_UNCHANGED);
+  if (raw.type() != CV_16UC1)
+    throw UserError(file.string() + ": depth must be a 16-bit grey image");
+  cv::Mat depth_m(raw.size(), CV_32F);
+  const double metres_per_unit = 1.0 / depth_factor;
+  for (int y = 0; y < raw.rows; ++y) {
+    const auto* from = raw.ptr<std::uint16_t>(y);
+    auto* to = depth_m.ptr<float>(y);
+    for (int x = 0; x < raw.cols; ++x) {
+      to[x] = from[x] == 65535 ? 0.0F : static_cast<float>(from[x] * metres_per_unit);
+    }
+  }
+  return depth_m;
+}
+
+cv::Mat read_label_image(const fs::path& file) {
+  const cv::Mat labels = labels_from_image(decode(file, cv::IMREAD_UNCHANGED));
+  if (labels.empty()) {
+    throw UserError(file.string() + ": a mask must be an 8- or 16-bit grey or 24-bit colour image");
+  }
+  return labels;
+}
+
+void silence_codecs() {
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  av_log_set_callback(no_message);
+}
+
+}  // namespace planecast::engine

@@ -1,0 +1,228 @@
+#include "engine/sequence/synth.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <future>
+#include <opencv2/imgcodecs.hpp>
+#include <optional>
+
+#include "engine/assets.h"
+#include "engine/convert.h"
+#include "engine/sequence/camera_file.h"
+#include "engine/sequence/synth/camera_effects.h"
+#include "engine/sequence/synth/painted_scene.h"
+#include "engine/sequence/synth/random.h"
+#include "engine/sequence/synth/scenes.h"
+#include "engine/sequence/synth/truth_files.h"
+#include "engine/user_error.h"
+#include "render/renderer.h"
+
+namespace planecast::engine {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double kFarthestDepth = 8.0;  // metres: what a structured-light sensor still sees
+
+CameraSettings synthetic_camera(const SynthOptions& options) {
+  CameraSettings settings;
+  slam::Camera& camera = settings.camera;
+  camera.width = options.width;
+  camera.height = options.height;
+  camera.fx = camera.fy = 525.0 * options.width / 640.0;
+  camera.cx = 0.5 * (options.width - 1);
+  camera.cy = 0.5 * (options.height - 1);
+  settings.fps = options.fps;
+  settings.depth_factor = options.depth_factor;
+  return settings;
+}
+
+void check(const SynthOptions& options) {
+  if (options.width < 16 || options.height < 16 || options.width > 4096 || options.height > 4096) {
+    throw UserError(fmt::format("{}x{}: pictures must be 16 to 4096 pixels a side", options.width,
+                                options.height));
+  }
+  if (!(options.fps > 0.0) || options.fps > 1000.0) {
+    throw UserError(
+        fmt::format("{} frames per second: must be above 0 and at most 1000", options.fps));
+  }
+  if (!(options.depth_factor > 0.0)) throw UserError("the depth factor must be positive");
+}
+
+synth::Scene scene_named(const SynthOptions& options) {
+  auto scene = synth::make_scene(options.name, options.seed);
+  if (scene) return std::move(*scene);
+  throw UserError(fmt::format("{}: no such synthetic scene ({})", options.name,
+                              fmt::join(synth::scene_names(), ", ")));
+}
+
+/// One frame as it will be written.
+struct FramePictures {
+  std::string stamp;
+  cv::Mat bgr;
+  cv::Mat depth;  ///< 16-bit
+  cv::Mat mask;   ///< 8-bit
+};
+
+cv::Mat bgr_of(const render::ImageU8& rgb) {
+  cv::Mat bgr(rgb.height, rgb.width, CV_8UC3);
+  const std::uint8_t* from = rgb.pixels.data();
+  for (int y = 0; y < bgr.rows; ++y) {
+    auto* to = bgr.ptr<std::uint8_t>(y);
+    for (int x = 0; x < bgr.cols; ++x, from += 3, to += 3) {
+      to[0] = from[2];
+      to[1] = from[1];
+      to[2] = from[0];
+    }
+  }
+  return bgr;
+}
+
+cv::Mat mask_of(const render::Image<std::uint16_t>& labels) {
+  cv::Mat mask(labels.height, labels.width, CV_8U);
+  std::transform(labels.pixels.begin(), labels.pixels.end(), mask.begin<std::uint8_t>(),
+                 [](std::uint16_t label) { return static_cast<std::uint8_t>(label); });
+  return mask;
+}
+
+cv::Mat encode_depth(const cv::Mat& depth_m, double factor) {
+  cv::Mat units(depth_m.size(), CV_16U);
+  std::transform(depth_m.begin<float>(), depth_m.end<float>(), units.begin<std::uint16_t>(),
+                 [factor](float z) -> std::uint16_t {
+                   const double value = z > kFarthestDepth ? 0.0 : std::round(z * factor);
+                   return static_cast<std::uint16_t>(value < 65535.0 ? value : 0.0);
+                 });
+  return units;
+}
+
+/// Pixels a second at which a point 2 m ahead of the camera moves.
+Eigen::Vector2d flow_at(const synth::CameraPath& path, const slam::Camera& camera, double time_s) {
+  constexpr double kStep = 1e-3;
+  const slam::Pose now = path.world_from_cam(time_s);
+  const slam::Pose later = path.world_from_cam(time_s + kStep);
+  const Eigen::Vector3d ahead = now * Eigen::Vector3d(0, 0, 2.0);
+  const Eigen::Vector2d moved = camera.project(later.inverse() * ahead);
+  return (moved - Eigen::Vector2d(camera.cx, camera.cy)) / kStep;
+}
+
+bool is_covered(const synth::Scene& scene, double time_s) {
+  return std::any_of(scene.covered_s.begin(), scene.covered_s.end(), [time_s](const auto& span) {
+    return time_s >= span.first && time_s < span.second;
+  });
+}
+
+class Generator {
+ public:
+  Generator(const SynthOptions& options, synth::Scene scene)
+      : options_(options),
+        scene_(std::move(scene)),
+        camera_(synthetic_camera(options).camera),
+        renderer_(renderer_options(options)),
+        painted_(synth::paint_scene(scene_.model, texture_detail(options))),
+        effects_({}, options.width, options.height, synth::named_seed("effects", options.seed)) {}
+
+  FramePictures draw(int frame, double time_s) {
+    const slam::Pose cam_from_world = scene_.path.world_from_cam(time_s).inverse();
+    const render::OpaqueImages images =
+        renderer_.draw_opaque(painted_, to_render_camera(camera_, cam_from_world));
+    FramePictures pictures;
+    pictures.bgr = bgr_of(images.rgb);
+    pictures.mask = mask_of(images.labels);
+    cv::Mat depth_m(camera_.height, camera_.width, CV_32F);
+    std::copy(images.depth.pixels.begin(), images.depth.pixels.end(), depth_m.begin<float>());
+    if (is_covered(scene_, time_s)) {
+      pictures.bgr = synth::covered_lens(camera_.width, camera_.height, frame, options_.seed);
+      pictures.mask.setTo(0);
+      depth_m.setTo(0.0F);
+    } else if (options_.effects) {
+      effects_.apply(pictures.bgr, frame, time_s, flow_at(scene_.path, camera_, time_s));
+      synth::degrade_depth(depth_m, camera_.fx, frame, synth::named_seed("depth", options_.seed));
+    }
+    pictures.depth = encode_depth(depth_m, options_.depth_factor);
+    return pictures;
+  }
+
+  const synth::Scene& scene() const { return scene_; }
+
+ private:
+  static render::RendererOptions renderer_options(const SynthOptions& options) {
+    render::RendererOptions renderer;
+    renderer.shader_dir =
+        options.shader_dir.empty() ? asset("shaders").string() : options.shader_dir;
+    return renderer;
+  }
+  /// Small pictures need no large textures.
+  static float texture_detail(const SynthOptions& options) {
+    return static_cast<float>(std::clamp(options.width / 640.0, 0.08, 2.0));
+  }
+
+  const SynthOptions& options_;
+  synth::Scene scene_;
+  slam::Camera camera_;
+  render::Renderer renderer_;
+  render::OpaqueScene painted_;
+  synth::CameraEffects effects_;
+};
+
+void write_png(const fs::path& file, const cv::Mat& image, int compression) {
+  bool good = false;
+  try {
+    good = cv::imwrite(file.string(), image, {cv::IMWRITE_PNG_COMPRESSION, compression});
+  } catch (const cv::Exception&) {
+    good = false;
+  }
+  if (!good) throw UserError(file.string() + ": cannot be written");
+}
+
+void write_pictures(const fs::path& out, const FramePictures& pictures) {
+  const std::string name = pictures.stamp + ".png";
+  // A noisy picture shrinks no more at higher levels, only more slowly.
+  write_png(out / "rgb" / name, pictures.bgr, 1);
+  write_png(out / "depth" / name, pictures.depth, 1);
+  write_png(out / "mask" / name, pictures.mask, 3);
+}
+
+void make_folders(const fs::path& out) {
+  for (const char* name : {"rgb", "depth", "mask"}) {
+    std::error_code error;
+    fs::create_directories(out / name, error);
+    if (error) throw UserError(fmt::format("{}: {}", (out / name).string(), error.message()));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> synthetic_scene_names() { return synth::scene_names(); }
+
+void write_synthetic(const SynthOptions& options, const fs::path& out,
+                     const std::function<void(int, int)>& progress) {
+  check(options);
+  synth::Scene scene = scene_named(options);
+  make_folders(out);
+  const double duration_s = scene.path.duration_s();
+  const int total =
+      options.frames > 0 ? options.frames : static_cast<int>(std::lround(duration_s * options.fps));
+  Generator generator(options, std::move(scene));
+  synth::TruthFiles truth(out, generator.scene().model.planes);
+  // Encoding takes as long as drawing: the frame before is written meanwhile.
+  std::future<void> writing;
+  for (int frame = 0; frame < total; ++frame) {
+    const double time_s = frame / options.fps;
+    FramePictures pictures = generator.draw(frame, time_s);
+    pictures.stamp = fmt::format("{:.6f}", time_s);
+    truth.add_frame(pictures.stamp, frame, generator.scene().path.world_from_cam(time_s),
+                    pictures.mask);
+    if (writing.valid()) writing.get();
+    writing = std::async(std::launch::async, write_pictures, out, std::move(pictures));
+    if (progress) progress(frame + 1, total);
+  }
+  if (writing.valid()) writing.get();
+  write_camera_file(out / "camera.yaml", synthetic_camera(options));
+  truth.write();
+}
+
+}  // namespace planecast::engine

@@ -1,0 +1,257 @@
+#include "slam/optimize/bundle_problem.h"
+
+#include <ceres/loss_function.h>
+#include <ceres/solver.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace planecast::slam {
+namespace {
+
+/// Above this number of free keyframes the reduced system is sparse enough for a sparse solver.
+constexpr int kMaxDenseKeyframes = 120;
+constexpr double kMinDistance = 1e-9;
+
+std::vector<int> index_by_id(const std::vector<KeyframeId>& keyframes, int next_id) {
+  std::vector<int> index(static_cast<std::size_t>(next_id), kNone);
+  for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    index[static_cast<std::size_t>(keyframes[i])] = static_cast<int>(i);
+  }
+  return index;
+}
+
+bool is_determined(int observations, bool depth) { return observations >= (depth ? 1 : 2); }
+
+std::unique_ptr<ceres::CostFunction> make_cost(const ReprojectionTerm& term, bool refine_focal) {
+  if (refine_focal) {
+    if (term.rows() == 3) return std::make_unique<FocalReprojectionCost<3>>(term);
+    return std::make_unique<FocalReprojectionCost<2>>(term);
+  }
+  if (term.rows() == 3) return std::make_unique<ReprojectionCost<3>>(term);
+  return std::make_unique<ReprojectionCost<2>>(term);
+}
+
+ceres::Solver::Options solver_options(const BundleSolve& solve, int free_keyframes) {
+  ceres::Solver::Options options;
+  options.max_num_iterations = solve.iterations;
+  options.function_tolerance = solve.function_tolerance;
+  options.num_threads = 1;
+  options.logging_type = ceres::SILENT;
+  options.linear_solver_type =
+      free_keyframes <= kMaxDenseKeyframes ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
+  // Eigen's own solvers: the BLAS behind the others differs from machine to machine.
+  options.dense_linear_algebra_library_type = ceres::EIGEN;
+  options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
+  options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+  return options;
+}
+
+}  // namespace
+
+bool BundleProblem::has_depth() const {
+  return std::any_of(observations.begin(), observations.end(),
+                     [](const BundleObservation& seen) { return seen.term.rows() == 3; });
+}
+
+double BundleProblem::chi2(const BundleObservation& seen) const {
+  return seen.term.chi2(poses[static_cast<std::size_t>(seen.pose)].data(),
+                        points[static_cast<std::size_t>(seen.point)].data(), focal_factor);
+}
+
+BundleProblem collect_bundle(const Map& map, const Camera& camera,
+                             const std::vector<KeyframeId>& keyframes,
+                             const std::vector<char>& fixed,
+                             const std::vector<LandmarkId>& landmarks,
+                             const BundleOptions& options) {
+  BundleProblem problem;
+  problem.keyframes = keyframes;
+  problem.fixed = fixed;
+  problem.chi2_mono = options.chi2_mono;
+  problem.chi2_depth = options.chi2_depth;
+  problem.poses.reserve(keyframes.size());
+  for (const KeyframeId id : keyframes) {
+    problem.poses.push_back(block_from_pose(map.keyframes.at(id).cam_from_world));
+  }
+  std::vector<double> sigma_px;
+  sigma_px.reserve(static_cast<std::size_t>(options.levels.levels));
+  for (int octave = 0; octave < options.levels.levels; ++octave) {
+    sigma_px.push_back(options.levels.sigma_px(octave));
+  }
+  const std::vector<int> index = index_by_id(keyframes, map.keyframes.next_id());
+  for (const LandmarkId id : landmarks) {
+    const Landmark& landmark = map.landmarks.at(id);
+    const std::size_t begin = problem.observations.size();
+    bool depth = false;
+    for (const Observation& observation : landmark.observations) {
+      const int pose = index[static_cast<std::size_t>(observation.keyframe)];
+      if (pose == kNone) continue;
+      const Keypoint& keypoint =
+          map.keyframes.at(observation.keyframe)
+              .features->keypoints[static_cast<std::size_t>(observation.keypoint)];
+      const auto octave = static_cast<std::size_t>(
+          std::clamp(keypoint.octave, 0, static_cast<int>(sigma_px.size()) - 1));
+      problem.observations.push_back(
+          {pose, static_cast<int>(problem.points.size()),
+           ReprojectionTerm(camera, options.depth_baseline_m, keypoint.pixel.cast<double>(),
+                            sigma_px[octave], keypoint.depth),
+           true});
+      depth = depth || keypoint.depth > 0.0F;
+    }
+    if (!is_determined(static_cast<int>(problem.observations.size() - begin), depth)) {
+      problem.observations.erase(problem.observations.begin() + static_cast<std::ptrdiff_t>(begin),
+                                 problem.observations.end());
+      continue;
+    }
+    problem.landmarks.push_back(id);
+    problem.points.push_back(landmark.position);
+  }
+  return problem;
+}
+
+BundleProblem collect_whole_map(const Map& map, const Camera& camera,
+                                const BundleOptions& options) {
+  std::vector<KeyframeId> keyframes;
+  for (const Keyframe& keyframe : map.keyframes) keyframes.push_back(keyframe.id);
+  std::vector<LandmarkId> landmarks;
+  for (const Landmark& landmark : map.landmarks) landmarks.push_back(landmark.id);
+  std::vector<char> fixed(keyframes.size(), 0);
+  fixed.front() = 1;
+  return collect_bundle(map, camera, keyframes, fixed, landmarks, options);
+}
+
+int solve_bundle(BundleProblem& problem, const BundleSolve& solve) {
+  ceres::Problem::Options ownership;
+  ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ownership.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ownership.disable_all_safety_checks = true;
+  ceres::HuberLoss huber_mono(std::sqrt(problem.chi2_mono));
+  ceres::HuberLoss huber_depth(std::sqrt(problem.chi2_depth));
+  PoseManifold manifold;
+  std::vector<std::unique_ptr<ceres::CostFunction>> costs;
+  costs.reserve(problem.observations.size());
+  ceres::Problem ceres_problem(ownership);
+
+  std::vector<char> pose_used(problem.poses.size(), 0);
+  std::vector<char> point_used(problem.points.size(), 0);
+  for (const BundleObservation& seen : problem.observations) {
+    if (!seen.active) continue;
+    pose_used[static_cast<std::size_t>(seen.pose)] = 1;
+    point_used[static_cast<std::size_t>(seen.point)] = 1;
+    costs.push_back(make_cost(seen.term, solve.refine_focal));
+    ceres::LossFunction* loss = nullptr;
+    if (solve.robust) loss = seen.term.rows() == 3 ? &huber_depth : &huber_mono;
+    double* pose = problem.poses[static_cast<std::size_t>(seen.pose)].data();
+    double* point = problem.points[static_cast<std::size_t>(seen.point)].data();
+    if (solve.refine_focal) {
+      ceres_problem.AddResidualBlock(costs.back().get(), loss, pose, point, &problem.focal_factor);
+    } else {
+      ceres_problem.AddResidualBlock(costs.back().get(), loss, pose, point);
+    }
+  }
+  if (costs.empty()) return 0;
+  const auto free_keyframes = std::count(problem.fixed.begin(), problem.fixed.end(), 0);
+  ceres::Solver::Options options = solver_options(solve, static_cast<int>(free_keyframes));
+  ceres::ParameterBlockOrdering& ordering = *options.linear_solver_ordering;
+  for (std::size_t i = 0; i < problem.points.size(); ++i) {
+    if (point_used[i]) ordering.AddElementToGroup(problem.points[i].data(), kPointGroup);
+  }
+  for (std::size_t i = 0; i < problem.poses.size(); ++i) {
+    if (!pose_used[i]) continue;
+    ordering.AddElementToGroup(problem.poses[i].data(), kPoseGroup);
+    ceres_problem.SetManifold(problem.poses[i].data(), &manifold);
+    if (problem.fixed[i]) ceres_problem.SetParameterBlockConstant(problem.poses[i].data());
+  }
+  if (solve.refine_focal) ordering.AddElementToGroup(&problem.focal_factor, kFocalGroup);
+  if (solve.extend) solve.extend(ceres_problem, ordering);
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &ceres_problem, &summary);
+  return summary.num_successful_steps + summary.num_unsuccessful_steps;
+}
+
+int deactivate_outliers(BundleProblem& problem, double gate) {
+  std::vector<int> left(problem.points.size(), 0);
+  std::vector<char> depth(problem.points.size(), 0);
+  for (BundleObservation& seen : problem.observations) {
+    const double chi2 = problem.chi2(seen);
+    seen.active = std::isfinite(chi2) && chi2 <= gate * problem.threshold(seen);
+    if (!seen.active) continue;
+    ++left[static_cast<std::size_t>(seen.point)];
+    if (seen.term.rows() == 3) depth[static_cast<std::size_t>(seen.point)] = 1;
+  }
+  int inactive = 0;
+  for (BundleObservation& seen : problem.observations) {
+    const auto point = static_cast<std::size_t>(seen.point);
+    seen.active = seen.active && is_determined(left[point], depth[point] != 0);
+    inactive += !seen.active;
+  }
+  return inactive;
+}
+
+double reprojection_rms_px(const BundleProblem& problem) {
+  double sum = 0.0;
+  int count = 0;
+  for (const BundleObservation& seen : problem.observations) {
+    if (!seen.active) continue;
+    double residuals[3];
+    seen.term.evaluate(problem.poses[static_cast<std::size_t>(seen.pose)].data(),
+                       problem.points[static_cast<std::size_t>(seen.point)].data(),
+                       problem.focal_factor, residuals, nullptr, nullptr, nullptr);
+    const double squared = residuals[0] * residuals[0] + residuals[1] * residuals[1];
+    sum += squared / (seen.term.inverse_sigma * seen.term.inverse_sigma);
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0.0;
+}
+
+double keyframe_distance(const BundleProblem& problem, int anchor, int other) {
+  const auto centre = [&](int index) -> Eigen::Vector3d {
+    return pose_from_block(problem.poses[static_cast<std::size_t>(index)]).inverse().translation();
+  };
+  return (centre(anchor) - centre(other)).norm();
+}
+
+double restore_distance(BundleProblem& problem, int anchor, int other, double distance) {
+  const double now = keyframe_distance(problem, anchor, other);
+  if (!(now > kMinDistance) || !(distance > kMinDistance)) return 1.0;
+  const double factor = distance / now;
+  const Eigen::Vector3d centre =
+      pose_from_block(problem.poses[static_cast<std::size_t>(anchor)]).inverse().translation();
+  for (std::size_t i = 0; i < problem.poses.size(); ++i) {
+    if (problem.fixed[i]) continue;
+    // t' = s t + (s - 1) R c keeps R (c + s (x - c)) + t' = s (R x + t).
+    Pose pose = pose_from_block(problem.poses[i]);
+    pose.translation() =
+        factor * pose.translation() + (factor - 1.0) * (pose.linear() * centre).eval();
+    problem.poses[i] = block_from_pose(pose);
+  }
+  for (Eigen::Vector3d& point : problem.points) point = centre + factor * (point - centre);
+  return factor;
+}
+
+void write_back(const BundleProblem& problem, Map& map) {
+  for (std::size_t i = 0; i < problem.keyframes.size(); ++i) {
+    if (problem.fixed[i]) continue;
+    map.keyframes.at(problem.keyframes[i]).cam_from_world = pose_from_block(problem.poses[i]);
+  }
+  for (std::size_t i = 0; i < problem.landmarks.size(); ++i) {
+    map.landmarks.at(problem.landmarks[i]).position = problem.points[i];
+  }
+}
+
+int remove_inactive(const BundleProblem& problem, Map& map) {
+  int removed = 0;
+  for (const BundleObservation& seen : problem.observations) {
+    if (seen.active) continue;
+    const LandmarkId landmark = problem.landmarks[static_cast<std::size_t>(seen.point)];
+    if (map.landmarks.contains(landmark)) {
+      map.remove_observation(landmark, problem.keyframes[static_cast<std::size_t>(seen.pose)]);
+    }
+    ++removed;
+  }
+  return removed;
+}
+
+}  // namespace planecast::slam

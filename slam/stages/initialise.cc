@@ -1,0 +1,209 @@
+#include "slam/stages/initialise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <future>
+
+#include "slam/features/matching.h"
+#include "slam/fitting/fit_homography.h"
+#include "slam/optimize/bundle.h"
+#include "slam/segmentation/plane_segmenter.h"
+
+namespace planecast::slam {
+namespace {
+
+std::string explain(TwoViewFailure failure) {
+  switch (failure) {
+    case TwoViewFailure::kTooLittleParallax:
+      return "too little parallax";
+    case TwoViewFailure::kAmbiguous:
+      return "ambiguous motion";
+    case TwoViewFailure::kTooFewPoints:
+      return "too few points";
+    case TwoViewFailure::kTooFewMatches:
+      return "too few matches";
+    case TwoViewFailure::kNone:
+      break;
+  }
+  return "";
+}
+
+void add_landmark(Map& map, const Eigen::Vector3d& position, const Eigen::Vector3f& color,
+                  const std::vector<Observation>& observations, const ScaleLevels& levels) {
+  Landmark landmark;
+  landmark.id = map.landmarks.next_id();
+  landmark.position = position;
+  landmark.first_keyframe = observations.back().keyframe;
+  landmark.color = color;
+  map.landmarks.put(landmark);
+  for (const Observation& observation : observations) {
+    map.add_observation(landmark.id, observation.keyframe, observation.keypoint);
+  }
+  map.update_landmark_summary(landmark.id, levels);
+}
+
+}  // namespace
+
+Eigen::Vector3f color_at(const cv::Mat& image, const Eigen::Vector2f& raw_pixel) {
+  const int x = std::clamp(static_cast<int>(std::lround(raw_pixel.x())), 0, image.cols - 1);
+  const int y = std::clamp(static_cast<int>(std::lround(raw_pixel.y())), 0, image.rows - 1);
+  if (image.channels() == 1) return Eigen::Vector3f::Constant(image.at<uchar>(y, x));
+  const auto& bgr = image.at<cv::Vec3b>(y, x);
+  return {static_cast<float>(bgr[2]), static_cast<float>(bgr[1]), static_cast<float>(bgr[0])};
+}
+
+Keyframe make_keyframe(const ImageFeatures& image, const Pose& cam_from_world, const Map& map) {
+  Keyframe keyframe;
+  keyframe.id = map.keyframes.next_id();
+  keyframe.frame_index = image.frame_index;
+  keyframe.timestamp = image.timestamp;
+  keyframe.cam_from_world = cam_from_world;
+  keyframe.features = image.features;
+  keyframe.landmarks.assign(image.features->keypoints.size(), kNone);
+  keyframe.depth = image.depth;
+  keyframe.label_image = image.labels;
+  keyframe.labels.assign(image.features->keypoints.size(), 0);
+  if (!image.labels.empty()) {
+    for (std::size_t k = 0; k < keyframe.labels.size(); ++k) {
+      keyframe.labels[k] = label_at(image.labels, image.features->keypoints[k].raw);
+    }
+  }
+  return keyframe;
+}
+
+MonoInitialiser::MonoInitialiser(const InitialiseOptions& options, const Camera& camera)
+    : options_(options), camera_(camera) {}
+
+void MonoInitialiser::set_reference(const ImageFeatures& image) {
+  reference_ = image;
+  guess_.clear();
+  for (const Keypoint& keypoint : image.features->keypoints) {
+    guess_.push_back(keypoint.pixel.cast<double>());
+  }
+}
+
+TwoViewResult MonoInitialiser::solve(const std::vector<PointPair>& pairs,
+                                     const std::vector<float>& quality,
+                                     bool& used_homography) const {
+  std::future<std::optional<FundamentalResult>> fundamental_task =
+      std::async(std::launch::async, [&] {
+        FundamentalOptions options;
+        options.seed = options_.seed;
+        options.sigma_px = options_.two_view.sigma_px;
+        return find_fundamental(pairs, options);
+      });
+  HomographyOptions homography_options;
+  homography_options.image_width = camera_.width;
+  homography_options.image_height = camera_.height;
+  homography_options.seed = options_.seed;
+  const std::optional<HomographyFit> homography =
+      fit_homography(pairs, quality, {}, homography_options);
+  const std::optional<FundamentalResult> fundamental = fundamental_task.get();
+
+  std::vector<char> homography_inlier;
+  const double homography_score =
+      homography ? score_homography(homography->cur_H_ref, pairs, options_.two_view.sigma_px,
+                                    &homography_inlier)
+                 : 0.0;
+  const double fundamental_score = fundamental ? fundamental->score : 0.0;
+  TwoViewResult none;
+  none.failure = TwoViewFailure::kTooFewPoints;
+  if (homography_score + fundamental_score <= 0.0) return none;
+
+  used_homography =
+      homography_score / (homography_score + fundamental_score) > options_.homography_share;
+  if (used_homography) {
+    return select_relative_pose(decompose_homography(homography->cur_H_ref, camera_), pairs,
+                                homography_inlier, camera_, options_.two_view);
+  }
+  return select_relative_pose(decompose_fundamental(fundamental->cur_F_ref, camera_), pairs,
+                              fundamental->inlier, camera_, options_.two_view);
+}
+
+InitialiseResult MonoInitialiser::try_image(const ImageFeatures& image, Map& map) {
+  InitialiseResult result;
+  if (image.features->size() < options_.min_features) {
+    reference_.reset();
+    result.reason = "too few features";
+    return result;
+  }
+  if (!reference_ || image.frame_index - reference_->frame_index > options_.max_reference_age) {
+    set_reference(image);
+    result.reason = "waiting for parallax";
+    return result;
+  }
+  const double window_px = options_.window_px * std::max(camera_.width, camera_.height) / 640.0;
+  const std::vector<std::pair<int, int>> matches =
+      match_for_initialisation(*reference_->features, *image.features, guess_, window_px);
+  result.matches = static_cast<int>(matches.size());
+  if (result.matches < options_.min_matches) {
+    set_reference(image);
+    result.reason = "too few matches";
+    return result;
+  }
+  std::vector<PointPair> pairs;
+  std::vector<float> quality;
+  for (const auto& [i, j] : matches) {
+    const auto r = static_cast<std::size_t>(i);
+    const auto c = static_cast<std::size_t>(j);
+    pairs.push_back({reference_->features->keypoints[r].pixel.cast<double>(),
+                     image.features->keypoints[c].pixel.cast<double>()});
+    quality.push_back(static_cast<float>(hamming_distance(reference_->features->descriptors[r],
+                                                          image.features->descriptors[c])));
+  }
+  const TwoViewResult two_view = solve(pairs, quality, result.used_homography);
+  if (two_view.failure != TwoViewFailure::kNone) {
+    result.reason = explain(two_view.failure);
+    return result;
+  }
+
+  Map start;
+  start.keyframes.put(make_keyframe(*reference_, Pose::Identity(), start));
+  Keyframe second = make_keyframe(image, two_view.cur_from_ref, start);
+  second.parent = 0;
+  start.keyframes.put(second);
+  for (std::size_t m = 0; m < matches.size(); ++m) {
+    if (!two_view.points_ref[m]) continue;
+    const auto& keypoint =
+        image.features->keypoints[static_cast<std::size_t>(matches[m].second)];
+    add_landmark(start, *two_view.points_ref[m], color_at(image.grey_or_bgr, keypoint.raw),
+                 {{0, matches[m].first}, {1, matches[m].second}}, options_.levels);
+  }
+  BundleOptions bundle;
+  bundle.iterations = 20;
+  bundle.levels = options_.levels;
+  const BundleResult adjusted = global_bundle(start, camera_, bundle);
+  const double median_depth = start.median_depth(0);
+  if (static_cast<int>(start.landmarks.size()) < options_.min_landmarks || median_depth <= 0.0 ||
+      adjusted.rms_after_px > options_.max_rms_px) {
+    result.reason = "unstable start";
+    return result;
+  }
+  start.transform(1.0 / median_depth, Pose::Identity());
+  map = std::move(start);
+  result.done = true;
+  return result;
+}
+
+InitialiseResult initialise_rgbd(const ImageFeatures& image, const Camera& camera,
+                                 const ScaleLevels& levels, int min_landmarks, Map& map) {
+  InitialiseResult result;
+  int with_depth = 0;
+  for (const Keypoint& keypoint : image.features->keypoints) with_depth += keypoint.depth > 0.0F;
+  if (with_depth < min_landmarks) {
+    result.reason = "too few features with depth";
+    return result;
+  }
+  map = Map();
+  map.keyframes.put(make_keyframe(image, Pose::Identity(), map));
+  for (int k = 0; k < image.features->size(); ++k) {
+    const Keypoint& keypoint = image.features->keypoints[static_cast<std::size_t>(k)];
+    if (keypoint.depth <= 0.0F) continue;
+    add_landmark(map, camera.ray(keypoint.pixel.cast<double>()) * keypoint.depth,
+                 color_at(image.grey_or_bgr, keypoint.raw), {{0, k}}, levels);
+  }
+  result.done = true;
+  return result;
+}
+
+}  // namespace planecast::slam

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "slam/data/camera.h"
+#include "slam/data/frame.h"
+#include "slam/data/map.h"
+#include "slam/geometry/two_view.h"
+
+namespace planecast::slam {
+
+/// Defaults from ORB-SLAM (Mur-Artal 2015, section IV) but where noted.
+struct InitialiseOptions {
+  int min_features = 100;           ///< in the reference image
+  int min_matches = 100;            ///< else the reference is replaced
+  double window_px = 100.0;         ///< at 640 px image width, scaled with it
+  double homography_share = 0.45;   ///< H when S_H / (S_H + S_F) is above it [P]
+  int max_reference_age = 90;       ///< frames after which a reference without parallax is replaced
+  int min_landmarks = 50;
+  double max_rms_px = 2.0;          ///< of the two-view bundle: a worse start is no start
+  TwoViewOptions two_view;
+  std::uint64_t seed = 1;
+  ScaleLevels levels;
+};
+
+/// One image with its features, as the tracker holds it.
+struct ImageFeatures {
+  int frame_index = 0;
+  double timestamp = 0.0;
+  std::shared_ptr<const Features> features;
+  cv::Mat grey_or_bgr;
+  cv::Mat depth;
+  cv::Mat labels;
+};
+
+struct InitialiseResult {
+  bool done = false;
+  std::string reason;  ///< why not, for frames.csv
+  bool used_homography = false;
+  int matches = 0;
+};
+
+/// Monocular start: H by graph-cut RANSAC and F by the 8-point algorithm in parallel, the relative pose
+/// of the better model, two keyframes, bundle adjustment, median depth 1 (paper, "System Initialization
+/// and Map Initialization").
+class MonoInitialiser {
+ public:
+  MonoInitialiser(const InitialiseOptions& options, const Camera& camera);
+
+  /// Tries the image against the reference. On success `map` (empty before) holds keyframes 0 (the
+  /// reference, at the origin) and 1 (this image) and their landmarks.
+  InitialiseResult try_image(const ImageFeatures& image, Map& map);
+  void reset() { reference_.reset(); }
+  const std::optional<ImageFeatures>& reference() const { return reference_; }
+
+ private:
+  void set_reference(const ImageFeatures& image);
+  TwoViewResult solve(const std::vector<PointPair>& pairs, const std::vector<float>& quality,
+                      bool& used_homography) const;
+
+  InitialiseOptions options_;
+  Camera camera_;
+  std::optional<ImageFeatures> reference_;
+  std::vector<Eigen::Vector2d> guess_;
+};
+
+/// RGB-D start from one image: a landmark for each keypoint with depth. Fails with too few of them.
+InitialiseResult initialise_rgbd(const ImageFeatures& image, const Camera& camera,
+                                 const ScaleLevels& levels, int min_landmarks, Map& map);
+
+/// A keyframe of the image; it has no landmarks yet. `map` gives the id.
+Keyframe make_keyframe(const ImageFeatures& image, const Pose& cam_from_world, const Map& map);
+
+/// Colour of the image at a raw pixel, RGB 0..255.
+Eigen::Vector3f color_at(const cv::Mat& grey_or_bgr, const Eigen::Vector2f& raw_pixel);
+
+}  // namespace planecast::slam

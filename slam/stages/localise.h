@@ -1,0 +1,43 @@
+#pragma once
+
+#include <vector>
+
+#include "slam/data/camera.h"
+#include "slam/data/map.h"
+#include "slam/stages/initialise.h"
+
+namespace planecast::slam {
+
+/// Defaults [K].
+struct LocaliseOptions {
+  int max_local_keyframes = 80;
+  int neighbours_each = 10;
+  double local_map_ratio = 0.8;   ///< best against second best descriptor
+  ScaleLevels levels;
+};
+
+/// A pose with the landmarks that support it.
+struct PoseEstimate {
+  Pose cam_from_world = Pose::Identity();
+  std::vector<LandmarkId> matches;  ///< per keypoint, inliers only
+  int inliers = 0;
+  double rms = 0.0;                 ///< normalised
+  std::vector<LandmarkId> visible;  ///< expected in the image, matched or not, ascending
+};
+
+/// Optimises the pose over `matches` (per keypoint) and clears the outliers.
+PoseEstimate optimise_matches(const Map& map, const Camera& camera, const Features& features,
+                              const Pose& prior_cam_from_world, std::vector<LandmarkId> matches,
+                              const ScaleLevels& levels);
+
+/// The keyframes about an image: those that share landmarks with it, most first, and their neighbours.
+std::vector<KeyframeId> local_keyframes(const Map& map, const std::vector<LandmarkId>& matches,
+                                        const LocaliseOptions& options);
+
+/// Searches the landmarks of `keyframes` in the image from a prior pose and optimises over the old and new matches.
+/// `widen` multiplies the search radius.
+PoseEstimate search_local_map(const Map& map, const Camera& camera, const Features& features,
+                              const PoseEstimate& prior, const std::vector<KeyframeId>& keyframes,
+                              double widen, const LocaliseOptions& options);
+
+}  // namespace planecast::slam

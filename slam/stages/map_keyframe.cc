@@ -1,0 +1,117 @@
+#include "slam/stages/map_keyframe.h"
+
+#include "slam/stages/stopwatch.h"
+
+namespace planecast::slam {
+namespace {
+
+void append_plane_times(const PlaneMappingStats& stats, StageTimes& times) {
+  times.emplace_back("Non-Planar Map Point Culling", stats.cull_ms);
+  times.emplace_back("New Plane Detection", stats.new_ms);
+  times.emplace_back("Plane Merging/Expanding", stats.merge_expand_ms);
+  times.emplace_back("Plane Re-estimation", stats.reestimate_ms);
+  times.emplace_back("Point-Plane Refinement", stats.refine_ms);
+}
+
+void count_visible(Map& map, const KeyframeJob& job) {
+  for (const LandmarkId id : job.visible) {
+    if (Landmark* landmark = map.landmarks.find(map.resolve(id))) ++landmark->visible;
+  }
+  for (const LandmarkId id : job.found) {
+    if (Landmark* landmark = map.landmarks.find(map.resolve(id))) ++landmark->found;
+  }
+}
+
+}  // namespace
+
+KeyframeMapper::KeyframeMapper(const KeyframeMapperOptions& options, const Camera& camera,
+                               std::unique_ptr<PlaneSegmenter> segmenter)
+    : options_(options),
+      camera_(camera),
+      segmenter_(std::move(segmenter)),
+      plane_mapper_(options.planes, camera, options.rgbd) {}
+
+void KeyframeMapper::reset() {
+  plane_mapper_ = PlaneMapper(options_.planes, camera_, options_.rgbd);
+}
+
+void KeyframeMapper::segment(const ImageFeatures& image, Keyframe& keyframe, StageTimes& times) {
+  Stopwatch watch;
+  FrameInput frame;
+  frame.index = image.frame_index;
+  frame.timestamp = image.timestamp;
+  frame.image = image.grey_or_bgr;
+  frame.depth = image.depth;
+  frame.labels = image.labels;
+  keyframe.label_image = segmenter_->segment(frame);
+  if (!keyframe.label_image.empty()) {
+    for (std::size_t k = 0; k < keyframe.labels.size(); ++k) {
+      keyframe.labels[k] = label_at(keyframe.label_image, keyframe.features->keypoints[k].raw);
+    }
+  }
+  times.emplace_back("Instance Planar Segmentation", watch.lap_ms());
+}
+
+KeyframeReport KeyframeMapper::start(Map& map, const std::vector<ImageFeatures>& images) {
+  KeyframeReport report;
+  if (!options_.map_planes) return report;
+  std::size_t next = 0;
+  for (Keyframe& keyframe : map.keyframes) {
+    segment(images[next++], keyframe, report.times);
+    report.keyframe = keyframe.id;
+  }
+  Stopwatch watch;
+  for (const Keyframe& keyframe : map.keyframes) {
+    plane_mapper_.cull_non_planar(map, keyframe.id, report.planes);
+    plane_mapper_.update(map, keyframe.id, report.planes);
+  }
+  report.times.emplace_back("Point-Plane Map Initialization", watch.lap_ms());
+  return report;
+}
+
+KeyframeId KeyframeMapper::put_keyframe(Map& map, const KeyframeJob& job, StageTimes& times) {
+  // The map may have moved since the tracker saw it: the pose goes along with its reference.
+  const Pose cam_from_world = job.cam_from_reference * map.keyframe_pose(job.reference);
+  Keyframe keyframe = make_keyframe(job.image, cam_from_world, map);
+  const KeyframeId id = keyframe.id;
+  keyframe.parent = map.living_ancestor(job.reference);
+  if (options_.map_planes) segment(job.image, keyframe, times);
+  map.keyframes.put(std::move(keyframe));
+  for (std::size_t k = 0; k < job.matches.size(); ++k) {
+    const LandmarkId landmark = job.matches[k] == kNone ? kNone : map.resolve(job.matches[k]);
+    if (landmark == kNone) continue;
+    map.add_observation(landmark, id, static_cast<int>(k));
+    map.update_landmark_summary(landmark, options_.points.levels);
+  }
+  return id;
+}
+
+KeyframeReport KeyframeMapper::insert(Map& map, const KeyframeJob& job) {
+  KeyframeReport report;
+  Stopwatch total;
+  count_visible(map, job);
+  const KeyframeId id = put_keyframe(map, job, report.times);
+  report.keyframe = id;
+
+  cull_landmarks(map, id, options_.rgbd, options_.points, report.points);
+  if (options_.map_planes) plane_mapper_.cull_non_planar(map, id, report.planes);
+  Stopwatch watch;
+  create_landmarks(map, id, camera_, options_.rgbd, job.image.grey_or_bgr, options_.points,
+                   report.points);
+  report.times.emplace_back("Triangulation", watch.lap_ms());
+  fuse_landmarks(map, id, camera_, options_.rgbd, options_.points, report.points);
+  report.times.emplace_back("Fusing", watch.lap_ms());
+  if (options_.map_planes) plane_mapper_.update(map, id, report.planes);
+  watch.lap_ms();
+  report.bundle = local_bundle(map, camera_, id, options_.bundle);
+  report.times.emplace_back("Local BA", watch.lap_ms());
+  if (options_.map_planes) {
+    plane_mapper_.follow_map(map);
+    append_plane_times(report.planes, report.times);
+  }
+  cull_keyframes(map, id, options_.points, report.points);
+  report.times.emplace_back("Local Mapping", total.lap_ms());
+  return report;
+}
+
+}  // namespace planecast::slam

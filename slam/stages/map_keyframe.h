@@ -1,0 +1,74 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "slam/data/camera.h"
+#include "slam/data/map.h"
+#include "slam/optimize/bundle.h"
+#include "slam/segmentation/plane_segmenter.h"
+#include "slam/stages/initialise.h"
+#include "slam/stages/localise.h"
+#include "slam/stages/map_planes.h"
+#include "slam/stages/map_points.h"
+
+namespace planecast::slam {
+
+/// Milliseconds by stage, in the order of the stages. For the record only: no result depends on it.
+using StageTimes = std::vector<std::pair<std::string, double>>;
+
+struct KeyframeMapperOptions {
+  bool rgbd = false;
+  bool map_planes = true;
+  PointMappingOptions points;
+  PlaneMappingOptions planes;
+  BundleOptions bundle;
+};
+
+/// A frame that is to become a keyframe, as the tracker hands it over.
+struct KeyframeJob {
+  ImageFeatures image;
+  std::vector<LandmarkId> matches;  ///< per keypoint, ids of the tracker's map
+  KeyframeId reference = kNone;
+  Pose cam_from_reference = Pose::Identity();
+  std::vector<LandmarkId> visible;  ///< expected in a frame since the last job, once a frame
+  std::vector<LandmarkId> found;    ///< ... and found there
+};
+
+struct KeyframeReport {
+  KeyframeId keyframe = kNone;
+  PointMappingStats points;
+  PlaneMappingStats planes;
+  BundleResult bundle;
+  StageTimes times;
+};
+
+/// Local mapping: everything that happens when a keyframe is inserted, in the paper's order. Works on a
+/// map of its own that nobody else touches meanwhile.
+class KeyframeMapper {
+ public:
+  KeyframeMapper(const KeyframeMapperOptions& options, const Camera& camera,
+                 std::unique_ptr<PlaneSegmenter> segmenter);
+
+  /// Planes of a map that was just initialised. `images`: those of its keyframes, in order.
+  KeyframeReport start(Map& map, const std::vector<ImageFeatures>& images);
+  KeyframeReport insert(Map& map, const KeyframeJob& job);
+  /// Brings the planes along after the map was changed as a whole.
+  void follow_map(Map& map) { plane_mapper_.follow_map(map); }
+  PlaneScale plane_scale() const { return plane_mapper_.scale(); }
+  /// Forgets everything about the map before.
+  void reset();
+
+ private:
+  KeyframeId put_keyframe(Map& map, const KeyframeJob& job, StageTimes& times);
+  void segment(const ImageFeatures& image, Keyframe& keyframe, StageTimes& times);
+
+  KeyframeMapperOptions options_;
+  Camera camera_;
+  std::unique_ptr<PlaneSegmenter> segmenter_;
+  PlaneMapper plane_mapper_;
+};
+
+}  // namespace planecast::slam

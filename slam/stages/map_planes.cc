@@ -1,0 +1,103 @@
+#include "slam/stages/map_planes.h"
+
+#include <chrono>
+
+#include "slam/stages/plane_steps.h"
+
+namespace planecast::slam {
+
+namespace {
+
+/// Adds the time from its making to its end; figures only, no result depends on it.
+class StepTimer {
+ public:
+  explicit StepTimer(double& total_ms) : total_ms_(total_ms) {}
+  ~StepTimer() {
+    const std::chrono::duration<double, std::milli> passed = Clock::now() - start_;
+    total_ms_ += passed.count();
+  }
+  StepTimer(const StepTimer&) = delete;
+  StepTimer& operator=(const StepTimer&) = delete;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  double& total_ms_;
+  Clock::time_point start_ = Clock::now();
+};
+
+/// Mean distance of the keyframe's landmarks from its camera; 0 without landmarks.
+double mean_distance(const Map& map, KeyframeId id) {
+  const Keyframe& keyframe = map.keyframes.at(id);
+  double sum = 0.0;
+  int count = 0;
+  for (const LandmarkId landmark_id : keyframe.landmarks) {
+    const Landmark* landmark = map.landmarks.find(landmark_id);
+    if (landmark == nullptr) continue;
+    sum += (keyframe.cam_from_world * landmark->position).norm();
+    ++count;
+  }
+  return count == 0 ? 0.0 : sum / count;
+}
+
+/// Thresholds for this keyframe. Mono follows the median depth; RGB-D keeps what the first keyframe
+/// gave.
+PlaneScale scale_at(const Map& map, KeyframeId keyframe, const PlaneMappingOptions& options,
+                    bool rgbd, const PlaneScale& previous) {
+  if (rgbd && previous.eps_d > 0.0) return previous;
+  const double scale = rgbd ? mean_distance(map, keyframe) : map.median_depth(keyframe);
+  if (!(scale > 0.0)) return previous;
+  return {options.eps_d * scale, options.eps_pi * scale};
+}
+
+}  // namespace
+
+PlaneMapper::PlaneMapper(const PlaneMappingOptions& options, const Camera& camera, bool rgbd)
+    : options_(options), camera_(camera), rgbd_(rgbd) {}
+
+void PlaneMapper::cull_non_planar(Map& map, KeyframeId keyframe, PlaneMappingStats& stats) {
+  if (!map.keyframes.contains(keyframe)) return;
+  const StepTimer timer(stats.cull_ms);
+  scale_ = scale_at(map, keyframe, options_, rgbd_, scale_);
+  if (!(scale_.eps_d > 0.0)) return;
+  stats.culled += cull_far_landmarks(map, keyframe, {options_, scale_, camera_, rgbd_});
+}
+
+void PlaneMapper::update(Map& map, KeyframeId keyframe, PlaneMappingStats& stats) {
+  if (!map.keyframes.contains(keyframe)) return;
+  if (!(scale_.eps_d > 0.0)) scale_ = scale_at(map, keyframe, options_, rgbd_, scale_);
+  if (!(scale_.eps_d > 0.0)) return;
+  const PlaneContext context{options_, scale_, camera_, rgbd_};
+  KeyframePoints shown;
+  {
+    // What an existing plane explains must not become a second plane, so that planes grow first
+    // [D].
+    const StepTimer timer(stats.merge_expand_ms);
+    shown = gather_points(map, keyframe, context);
+    stats.expanded += expand_planes(map, keyframe, context, shown);
+  }
+  {
+    const StepTimer timer(stats.new_ms);
+    stats.new_planes += find_planes(map, keyframe, context, shown);
+  }
+  {
+    const StepTimer timer(stats.merge_expand_ms);
+    stats.expanded += expand_planes(map, keyframe, context, shown);
+    stats.merged += merge_planes(map, context);
+  }
+  {
+    const StepTimer timer(stats.reestimate_ms);
+    stats.reestimated += reestimate_planes(map, keyframe, context);
+    stats.dropped += drop_weak_planes(map, context);
+  }
+  const StepTimer timer(stats.refine_ms);
+  const RefineCounts counts = project_landmarks(map, keyframe, context);
+  stats.refined += counts.refined;
+  stats.refused += counts.refused;
+}
+
+void PlaneMapper::follow_map(Map& map) {
+  if (!(scale_.eps_d > 0.0)) return;
+  refit_planes(map, {options_, scale_, camera_, rgbd_});
+}
+
+}  // namespace planecast::slam

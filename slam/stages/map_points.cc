@@ -1,0 +1,251 @@
+#include "slam/stages/map_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "slam/features/matching.h"
+#include "slam/geometry/triangulate.h"
+
+namespace planecast::slam {
+namespace {
+
+std::vector<KeyframeId> best_neighbours(const Map& map, KeyframeId keyframe, std::size_t most) {
+  std::vector<KeyframeId> ids;
+  for (const auto& [id, shared] : map.covisible(keyframe)) {
+    if (ids.size() == most) break;
+    ids.push_back(id);
+  }
+  return ids;
+}
+
+double squared_error_px(const Camera& camera, const Pose& cam_from_world,
+                        const Eigen::Vector3d& point_world, const Keypoint& keypoint) {
+  const Eigen::Vector3d point_cam = cam_from_world * point_world;
+  if (point_cam.z() <= 0.0) return 1e12;
+  return (camera.project(point_cam) - keypoint.pixel.cast<double>()).squaredNorm();
+}
+
+/// The ratio of distances must agree with the ratio of the octaves.
+bool scales_agree(const Keyframe& a, const Keypoint& in_a, const Keyframe& b, const Keypoint& in_b,
+                  const Eigen::Vector3d& point, const ScaleLevels& levels) {
+  const double distance_a = (point - a.centre_world()).norm();
+  const double distance_b = (point - b.centre_world()).norm();
+  if (distance_a < 1e-9 || distance_b < 1e-9) return false;
+  const double ratio = distance_b / distance_a;
+  const double octave_ratio = levels.scale(in_a.octave) / levels.scale(in_b.octave);
+  const double slack = 1.5 * levels.factor;
+  return ratio * slack > octave_ratio && ratio < octave_ratio * slack;
+}
+
+std::optional<Eigen::Vector3d> new_point(const Camera& camera, const Keyframe& a,
+                                         const Keypoint& in_a, const Keyframe& b,
+                                         const Keypoint& in_b,
+                                         const PointMappingOptions& options) {
+  const Eigen::Vector2d pixel_a = in_a.pixel.cast<double>();
+  const Eigen::Vector2d pixel_b = in_b.pixel.cast<double>();
+  const Eigen::Vector3d ray_a = a.cam_from_world.linear().transpose() * camera.ray(pixel_a);
+  const Eigen::Vector3d ray_b = b.cam_from_world.linear().transpose() * camera.ray(pixel_b);
+  const double cosine = ray_a.dot(ray_b) / (ray_a.norm() * ray_b.norm());
+  if (cosine <= 0.0 || cosine > options.min_parallax_cosine) return std::nullopt;
+  const std::optional<Eigen::Vector3d> point =
+      triangulate(camera, a.cam_from_world, pixel_a, b.cam_from_world, pixel_b);
+  if (!point) return std::nullopt;
+  const double sigma_a = options.levels.sigma_px(in_a.octave);
+  const double sigma_b = options.levels.sigma_px(in_b.octave);
+  if (squared_error_px(camera, a.cam_from_world, *point, in_a) >
+          options.chi2_mono * sigma_a * sigma_a ||
+      squared_error_px(camera, b.cam_from_world, *point, in_b) >
+          options.chi2_mono * sigma_b * sigma_b) {
+    return std::nullopt;
+  }
+  if (!scales_agree(a, in_a, b, in_b, *point, options.levels)) return std::nullopt;
+  return point;
+}
+
+LandmarkId put_landmark(Map& map, const Eigen::Vector3d& position, KeyframeId keyframe,
+                        const cv::Mat& image, const Keypoint& keypoint) {
+  Landmark landmark;
+  landmark.id = map.landmarks.next_id();
+  landmark.position = position;
+  landmark.first_keyframe = keyframe;
+  landmark.color = color_at(image, keypoint.raw);
+  map.landmarks.put(landmark);
+  return landmark.id;
+}
+
+/// Projects `candidates` into `keyframe` and joins each with what it finds there.
+void fuse_into(Map& map, const std::vector<LandmarkId>& candidates, KeyframeId id,
+               const Camera& camera, const PointMappingOptions& options, PointMappingStats& stats) {
+  std::vector<Expectation> expectations;
+  const Keyframe& keyframe = map.keyframes.at(id);
+  for (const LandmarkId candidate : candidates) {
+    const Landmark* landmark = map.landmarks.find(candidate);
+    if (landmark == nullptr) continue;
+    const bool seen = std::any_of(landmark->observations.begin(), landmark->observations.end(),
+                                  [id](const Observation& o) { return o.keyframe == id; });
+    Expectation expectation;
+    if (seen || !expect_landmark(*landmark, camera, keyframe.cam_from_world, options.levels,
+                                 expectation)) {
+      continue;
+    }
+    expectation.radius_px = 3.0 * options.levels.scale(expectation.max_octave);
+    expectations.push_back(expectation);
+  }
+  ExpectationMatchOptions match;
+  match.max_distance = kStrictDistance;
+  match.ratio = 1.0;
+  const auto pairs = match_expectations(*keyframe.features, expectations, {}, match);
+  for (const auto& [keypoint_index, e] : pairs) {
+    const LandmarkId candidate = expectations[static_cast<std::size_t>(e)].landmark;
+    const Landmark* landmark = map.landmarks.find(candidate);
+    if (landmark == nullptr) continue;
+    const auto k = static_cast<std::size_t>(keypoint_index);
+    const Keypoint& keypoint = keyframe.features->keypoints[k];
+    const double sigma = options.levels.sigma_px(keypoint.octave);
+    if (squared_error_px(camera, keyframe.cam_from_world, landmark->position, keypoint) >
+        options.chi2_mono * sigma * sigma) {
+      continue;
+    }
+    const LandmarkId present = keyframe.landmarks[k];
+    if (present == candidate) continue;
+    if (present == kNone) {
+      map.add_observation(candidate, id, keypoint_index);
+    } else if (map.landmarks.at(present).observations.size() >= landmark->observations.size()) {
+      map.replace_landmark(candidate, present);
+    } else {
+      map.replace_landmark(present, candidate);
+    }
+    ++stats.fused;
+  }
+}
+
+std::vector<LandmarkId> landmarks_in(const Keyframe& keyframe) {
+  std::vector<LandmarkId> ids;
+  for (const LandmarkId id : keyframe.landmarks) {
+    if (id != kNone) ids.push_back(id);
+  }
+  return ids;
+}
+
+}  // namespace
+
+void cull_landmarks(Map& map, KeyframeId keyframe, bool rgbd, const PointMappingOptions& options,
+                    PointMappingStats& stats) {
+  // A landmark from depth needs one more observer than its maker, a triangulated one two.
+  const int too_few_observers = rgbd ? 1 : 2;
+  std::vector<LandmarkId> doomed;
+  for (const Landmark& landmark : map.landmarks) {
+    const int age = keyframe - landmark.first_keyframe;
+    if (age < 1 || age > options.trial_keyframes) continue;
+    const auto observers = static_cast<int>(landmark.observations.size());
+    if (landmark.found_ratio() < options.min_found_ratio ||
+        (age >= 2 && observers <= too_few_observers)) {
+      doomed.push_back(landmark.id);
+    }
+  }
+  for (const LandmarkId id : doomed) map.erase_landmark(id);
+  stats.culled += static_cast<int>(doomed.size());
+}
+
+void create_landmarks(Map& map, KeyframeId id, const Camera& camera, bool rgbd,
+                      const cv::Mat& image, const PointMappingOptions& options,
+                      PointMappingStats& stats) {
+  const auto most =
+      static_cast<std::size_t>(rgbd ? options.neighbours_rgbd : options.neighbours_mono);
+  for (const KeyframeId neighbour_id : best_neighbours(map, id, most)) {
+    const Keyframe& keyframe = map.keyframes.at(id);
+    const Keyframe& neighbour = map.keyframes.at(neighbour_id);
+    const double baseline = (keyframe.centre_world() - neighbour.centre_world()).norm();
+    const double wanted = rgbd ? options.min_baseline_m
+                               : options.min_baseline_share * map.median_depth(neighbour_id);
+    if (baseline < wanted) continue;
+    for (const auto& [i, j] : match_along_epipolar(keyframe, neighbour, camera, options.levels)) {
+      const Keypoint& in_a = keyframe.features->keypoints[static_cast<std::size_t>(i)];
+      const Keypoint& in_b = neighbour.features->keypoints[static_cast<std::size_t>(j)];
+      const std::optional<Eigen::Vector3d> point =
+          new_point(camera, keyframe, in_a, neighbour, in_b, options);
+      if (!point) continue;
+      const LandmarkId landmark = put_landmark(map, *point, id, image, in_a);
+      map.add_observation(landmark, id, i);
+      map.add_observation(landmark, neighbour_id, j);
+      map.update_landmark_summary(landmark, options.levels);
+      ++stats.triangulated;
+    }
+  }
+  if (!rgbd) return;
+  const std::shared_ptr<const Features> features = map.keyframes.at(id).features;
+  const Pose world_from_cam = map.keyframes.at(id).cam_from_world.inverse();
+  for (int k = 0; k < features->size(); ++k) {
+    const Keypoint& keypoint = features->keypoints[static_cast<std::size_t>(k)];
+    if (map.keyframes.at(id).landmarks[static_cast<std::size_t>(k)] != kNone ||
+        keypoint.depth <= 0.0F || keypoint.depth > options.max_landmark_depth_m) {
+      continue;
+    }
+    const Eigen::Vector3d point_cam = camera.ray(keypoint.pixel.cast<double>()) * keypoint.depth;
+    const LandmarkId landmark = put_landmark(map, world_from_cam * point_cam, id, image, keypoint);
+    map.add_observation(landmark, id, k);
+    map.update_landmark_summary(landmark, options.levels);
+    ++stats.from_depth;
+  }
+}
+
+void fuse_landmarks(Map& map, KeyframeId id, const Camera& camera, bool rgbd,
+                    const PointMappingOptions& options, PointMappingStats& stats) {
+  const auto most =
+      static_cast<std::size_t>(rgbd ? options.neighbours_rgbd : options.neighbours_mono);
+  std::vector<KeyframeId> targets = best_neighbours(map, id, most);
+  const std::vector<KeyframeId> direct = targets;
+  for (const KeyframeId neighbour : direct) {
+    for (const KeyframeId second : best_neighbours(map, neighbour, 5)) {
+      if (second != id) targets.push_back(second);
+    }
+  }
+  std::sort(targets.begin(), targets.end());
+  targets.erase(std::unique(targets.begin(), targets.end()), targets.end());
+
+  for (const KeyframeId target : targets) {
+    fuse_into(map, landmarks_in(map.keyframes.at(id)), target, camera, options, stats);
+  }
+  std::vector<LandmarkId> around;
+  for (const KeyframeId target : targets) {
+    const std::vector<LandmarkId> seen = landmarks_in(map.keyframes.at(target));
+    around.insert(around.end(), seen.begin(), seen.end());
+  }
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  fuse_into(map, around, id, camera, options, stats);
+  for (const LandmarkId landmark : landmarks_in(map.keyframes.at(id))) {
+    map.update_landmark_summary(landmark, options.levels);
+  }
+}
+
+void cull_keyframes(Map& map, KeyframeId keyframe, const PointMappingOptions& options,
+                    PointMappingStats& stats) {
+  for (const auto& [id, shared] : map.covisible(keyframe)) {
+    if (id <= 1) continue;
+    const Keyframe& candidate = map.keyframes.at(id);
+    int total = 0;
+    int redundant = 0;
+    for (std::size_t k = 0; k < candidate.landmarks.size(); ++k) {
+      if (candidate.landmarks[k] == kNone) continue;
+      ++total;
+      const int octave = candidate.features->keypoints[k].octave;
+      int observers = 0;
+      for (const Observation& other : map.landmarks.at(candidate.landmarks[k]).observations) {
+        if (other.keyframe == id) continue;
+        const int other_octave = map.keyframes.at(other.keyframe)
+                                     .features->keypoints[static_cast<std::size_t>(other.keypoint)]
+                                     .octave;
+        observers += other_octave <= octave + 1;
+      }
+      redundant += observers >= options.redundant_observers;
+    }
+    if (redundant > options.redundant_share * total) {
+      map.erase_keyframe(id);
+      ++stats.keyframes_culled;
+    }
+  }
+}
+
+}  // namespace planecast::slam

@@ -1,0 +1,188 @@
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+
+#include "slam/geometry/random.h"
+#include "slam/stages/plane_steps.h"
+
+namespace planecast::slam {
+
+namespace {
+
+/// Subsets tried per re-estimation.
+constexpr int kSubsets = 12;
+/// Share of the support in each subset [P].
+constexpr double kSubsetShare = 0.6;
+/// Points that a re-estimation looks at; more would only take time.
+constexpr int kMostPoints = 400;
+/// Growth of the score that is worth a new equation.
+constexpr double kBetter = 1.001;
+/// Distance, in bands, beyond which support is let go.
+constexpr double kFarBands = 1.5;
+/// Landmarks of a plane in a keyframe for it to count as seen there.
+constexpr int kSeenLandmarks = 3;
+
+/// Sum of Gaussian kernels of the points' distances over their bands.
+double score_of(const PlaneEquation& plane, const PlanePoints& points,
+                const std::vector<int>& indices, double eps_d) {
+  double score = 0.0;
+  for (const int i : indices) {
+    const double r = plane.signed_distance(points.positions[i]) / (points.band[i] * eps_d);
+    if (points.view_from[i].dot(plane.normal) > 0.0) score += std::exp(-0.5 * r * r);
+  }
+  return score;
+}
+
+std::vector<double> weights_of(const PlanePoints& points) {
+  std::vector<double> weights;
+  weights.reserve(points.band.size());
+  for (const double band : points.band) weights.push_back(1.0 / (band * band));
+  return weights;
+}
+
+/// The fit with its normal on the side of `normal`.
+PlaneEquation facing(const PlaneEquation& plane, const Eigen::Vector3d& normal) {
+  return plane.normal.dot(normal) < 0.0 ? plane.flipped() : plane;
+}
+
+Eigen::Vector3d mean_view(const PlanePoints& points) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& view : points.view_from) sum += view;
+  return sum;
+}
+
+/// An even choice of at most kMostPoints of n.
+std::vector<int> evenly(int n) {
+  const int step = (n + kMostPoints - 1) / kMostPoints;
+  std::vector<int> result;
+  for (int i = 0; i < n; i += std::max(step, 1)) result.push_back(i);
+  return result;
+}
+
+bool reestimate(Plane& plane, const PlaneSupport& support, const PlaneContext& context,
+                std::uint64_t seed) {
+  const PlanePoints& points = support.points;
+  std::vector<int> pool = evenly(points.size());
+  const int size = static_cast<int>(std::lround(kSubsetShare * static_cast<double>(pool.size())));
+  if (size < 3) return false;
+  const std::vector<double> weights = weights_of(points);
+  const PlaneEquation present{plane.normal, plane.offset};
+  PlaneEquation best = present;
+  const double present_score = score_of(present, points, pool, context.scale.eps_d);
+  double best_score = present_score;
+  Random random(seed);
+  std::vector<int> subset(static_cast<std::size_t>(size));
+  for (int k = 0; k < kSubsets; ++k) {
+    for (int i = 0; i < size; ++i) {
+      std::swap(pool[i], pool[i + random.below(static_cast<int>(pool.size()) - i)]);
+      subset[i] = pool[i];
+    }
+    const auto fit = fit_plane(points.positions, subset, weights);
+    if (!fit) continue;
+    const PlaneEquation candidate = facing(fit->plane, plane.normal);
+    const double score = score_of(candidate, points, pool, context.scale.eps_d);
+    if (score <= best_score) continue;
+    best_score = score;
+    best = candidate;
+  }
+  if (best_score <= kBetter * present_score) return false;
+  plane.refit(best.normal, best.offset);
+  return true;
+}
+
+/// Lets go what the new equation does not explain: landmarks in view are left to the next culling,
+/// those out of view would stay for ever.
+void release_far_support(Map& map, Plane& plane, const PlaneSupport& support,
+                         const PlaneContext& context) {
+  const std::size_t landmarks = support.landmarks.size();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < support.points.positions.size(); ++i) {
+    const double distance = std::abs(plane.signed_distance(support.points.positions[i]));
+    const bool far = distance > kFarBands * support.points.band[i] * context.scale.eps_d;
+    if (i < landmarks) {
+      if (far) map.landmarks.at(support.landmarks[i]).plane = kNone;
+    } else if (!far) {
+      plane.depth_points[kept] = plane.depth_points[i - landmarks];
+      plane.depth_anchors[kept++] = plane.depth_anchors[i - landmarks];
+    }
+  }
+  plane.depth_points.resize(kept);
+  plane.depth_anchors.resize(kept);
+}
+
+/// Planes with at least kSeenLandmarks landmarks or any depth point in the keyframe.
+std::vector<char> seen_planes(const Map& map, KeyframeId keyframe) {
+  std::vector<int> count(static_cast<std::size_t>(map.planes.next_id()), 0);
+  for (const LandmarkId id : map.keyframes.at(keyframe).landmarks) {
+    const Landmark* landmark = map.landmarks.find(id);
+    if (landmark != nullptr && map.planes.contains(landmark->plane)) ++count[landmark->plane];
+  }
+  std::vector<char> seen(count.size(), 0);
+  for (const Plane& plane : map.planes) {
+    const bool by_depth =
+        !plane.depth_anchors.empty() && plane.depth_anchors.back().keyframe == keyframe;
+    seen[plane.id] = count[plane.id] >= kSeenLandmarks || by_depth;
+  }
+  return seen;
+}
+
+}  // namespace
+
+bool refit_robustly(Plane& plane, const PlaneSupport& support, const PlaneContext& context) {
+  const PlanePoints& points = support.points;
+  std::vector<int> used(points.positions.size());
+  std::iota(used.begin(), used.end(), 0);
+  const std::vector<double> weights = weights_of(points);
+  PlaneEquation equation;
+  constexpr int kRounds = 3;
+  for (int round = 0; round < kRounds; ++round) {
+    const auto fit = fit_plane(points.positions, used, weights);
+    if (!fit) return false;
+    equation = facing(fit->plane, mean_view(points));
+    std::vector<double> distance;
+    for (int i = 0; i < points.size(); ++i) {
+      distance.push_back(std::abs(equation.signed_distance(points.positions[i])) / points.band[i]);
+    }
+    std::vector<double> sorted = distance;
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    std::nth_element(sorted.begin(), middle, sorted.end());
+    const double gate = std::max(context.scale.eps_d, 3.0 * *middle);
+    used.clear();
+    for (int i = 0; i < points.size(); ++i) {
+      if (distance[i] < gate) used.push_back(i);
+    }
+  }
+  plane.refit(equation.normal, equation.offset);
+  return true;
+}
+
+int reestimate_planes(Map& map, KeyframeId keyframe, const PlaneContext& context) {
+  const std::vector<PlaneSupport> support = gather_support(map, context);
+  const std::vector<char> seen = seen_planes(map, keyframe);
+  int changed = 0;
+  for (Plane& plane : map.planes) {
+    if (!seen[plane.id]) continue;
+    const std::uint64_t task = static_cast<std::uint64_t>(keyframe) * 4096 + plane.id;
+    changed += reestimate(plane, support[plane.id], context, mix_seed(context.options.seed, task));
+    release_far_support(map, plane, support[plane.id], context);
+  }
+  return changed;
+}
+
+void refit_planes(Map& map, const PlaneContext& context) {
+  for (Plane& plane : map.planes) {
+    for (std::size_t i = 0; i < plane.depth_points.size(); ++i) {
+      const DepthAnchor& anchor = plane.depth_anchors[i];
+      plane.depth_points[i] =
+          map.keyframe_pose(anchor.keyframe).inverse() * anchor.point_cam.cast<double>();
+    }
+  }
+  const std::vector<PlaneSupport> support = gather_support(map, context);
+  for (Plane& plane : map.planes) {
+    refit_robustly(plane, support[plane.id], context);
+    update_figures(plane, support[plane.id], context);
+  }
+}
+
+}  // namespace planecast::slam

@@ -1,0 +1,179 @@
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "slam/stages/plane_steps.h"
+
+namespace planecast::slam {
+
+namespace {
+
+/// A mask instance is a plane's if the plane owns this share of the instance's owned landmarks, and
+/// so many.
+constexpr double kMaskShare = 0.5;
+constexpr int kMinMaskVotes = 3;
+/// Support within linking distance that a point needs to join.
+constexpr int kMinNeighbours = 2;
+/// Landmarks by which a keyframe becomes an observer of a plane.
+constexpr int kMinObserved = 5;
+/// Depth points kept per plane.
+constexpr int kMostDepthPoints = 400;
+/// Support points kept for the search of neighbours.
+constexpr int kMostSupport = 600;
+/// Rounds in which what has just joined may bring in its neighbours.
+constexpr int kRounds = 3;
+
+/// RMS, in eps_Pi, beyond which a plane's support has stopped being one.
+constexpr double kMaxThickness = 1.5;
+
+/// Which mask instances of this image are which plane's.
+class MaskVotes {
+ public:
+  MaskVotes(const KeyframePoints& shown, int num_planes)
+      : has_masks_(shown.has_masks), num_planes_(static_cast<std::size_t>(num_planes)) {
+    int labels = 0;
+    for (const int label : shown.label) labels = std::max(labels, label + 1);
+    votes_.assign(static_cast<std::size_t>(labels) * num_planes_, 0);
+    total_.assign(static_cast<std::size_t>(labels), 0);
+    for (int i = 0; i < shown.size(); ++i) {
+      if (shown.label[i] <= 0 || shown.plane[i] == kNone) continue;
+      ++votes_[shown.label[i] * num_planes_ + shown.plane[i]];
+      ++total_[shown.label[i]];
+    }
+  }
+  /// Without masks every plane may take every point.
+  bool allow(int label, PlaneId plane) const {
+    if (!has_masks_) return true;
+    if (label <= 0) return false;
+    const int votes = votes_[label * num_planes_ + plane];
+    return votes >= kMinMaskVotes && votes >= kMaskShare * total_[label];
+  }
+
+ private:
+  bool has_masks_;
+  std::size_t num_planes_;
+  std::vector<int> votes_;
+  std::vector<int> total_;
+};
+
+/// Evenly chosen support, kept small because every candidate is compared with all of it.
+std::vector<Eigen::Vector3d> thinned(const std::vector<Eigen::Vector3d>& points) {
+  const std::size_t step = (points.size() + kMostSupport - 1) / kMostSupport;
+  std::vector<Eigen::Vector3d> result;
+  for (std::size_t i = 0; i < points.size(); i += std::max<std::size_t>(step, 1)) {
+    result.push_back(points[i]);
+  }
+  return result;
+}
+
+struct Growing {
+  PlaneId plane = kNone;
+  std::vector<Eigen::Vector3d> support;
+  double link = 0.0;
+
+  bool is_near(const Eigen::Vector3d& point) const {
+    int near = 0;
+    for (const Eigen::Vector3d& other : support) {
+      if ((other - point).squaredNorm() < link * link && ++near >= kMinNeighbours) return true;
+    }
+    return false;
+  }
+};
+
+std::vector<Growing> growing_planes(const Map& map, const PlaneContext& context) {
+  std::vector<Growing> result;
+  const std::vector<PlaneSupport> support = gather_support(map, context);
+  for (const Plane& plane : map.planes) {
+    Growing growing;
+    growing.plane = plane.id;
+    growing.support = thinned(support[plane.id].points.positions);
+    growing.link = link_of(growing.support, context.scale);
+    result.push_back(std::move(growing));
+  }
+  return result;
+}
+
+/// The nearest plane that takes point i, or null.
+Growing* taker_of(const Map& map, std::vector<Growing>& planes, const KeyframePoints& shown, int i,
+                  const MaskVotes& masks, const PlaneContext& context) {
+  const PlanePoints& points = shown.points;
+  double best = points.band[i] * context.scale.eps_d;
+  Growing* taker = nullptr;
+  for (Growing& growing : planes) {
+    const Plane& plane = map.planes.at(growing.plane);
+    const double distance = std::abs(plane.signed_distance(points.positions[i]));
+    if (distance >= best || points.view_from[i].dot(plane.normal) <= 0.0) continue;
+    if (!masks.allow(shown.label[i], plane.id) || !growing.is_near(points.positions[i])) continue;
+    best = distance;
+    taker = &growing;
+  }
+  return taker;
+}
+
+void note_observer(Plane& plane, KeyframeId keyframe) {
+  const auto place = std::lower_bound(plane.observers.begin(), plane.observers.end(), keyframe);
+  if (place == plane.observers.end() || *place != keyframe) plane.observers.insert(place, keyframe);
+}
+
+void note_observers(Map& map, KeyframeId keyframe, const KeyframePoints& shown) {
+  std::vector<int> count(static_cast<std::size_t>(map.planes.next_id()), 0);
+  for (const PlaneId plane : shown.plane) {
+    if (plane != kNone) ++count[plane];
+  }
+  for (Plane& plane : map.planes) {
+    if (count[plane.id] >= kMinObserved) note_observer(plane, keyframe);
+  }
+}
+
+}  // namespace
+
+int expand_planes(Map& map, KeyframeId keyframe, const PlaneContext& context,
+                  KeyframePoints& shown) {
+  if (map.planes.empty()) return 0;
+  const MaskVotes masks(shown, map.planes.next_id());
+  std::vector<Growing> planes = growing_planes(map, context);
+  int joined = 0;
+  for (int round = 0, gained = 1; round < kRounds && gained > 0; ++round) {
+    gained = 0;
+    for (int i = 0; i < shown.size(); ++i) {
+      if (shown.plane[i] != kNone) continue;
+      Growing* taker = taker_of(map, planes, shown, i, masks, context);
+      if (taker == nullptr) continue;
+      Plane& plane = map.planes.at(taker->plane);
+      shown.plane[i] = plane.id;
+      taker->support.push_back(shown.points.positions[i]);
+      plane.stalled_keyframes = 0;
+      ++gained;
+      if (shown.landmark[i] == kNone) {
+        add_depth_point(plane, keyframe, shown.points.positions[i], shown.point_cam[i]);
+      } else {
+        map.landmarks.at(shown.landmark[i]).plane = plane.id;
+        ++joined;
+      }
+    }
+  }
+  for (Plane& plane : map.planes) {
+    bound_depth_points(plane, kMostDepthPoints, context.scale.eps_d);
+  }
+  note_observers(map, keyframe, shown);
+  return joined;
+}
+
+int drop_weak_planes(Map& map, const PlaneContext& context) {
+  const std::vector<PlaneSupport> support = gather_support(map, context);
+  std::vector<PlaneId> dropped;
+  for (Plane& plane : map.planes) {
+    update_figures(plane, support[plane.id], context);
+    const bool starved = support[plane.id].points.size() < context.options.min_inliers;
+    const bool thick = plane.rms > kMaxThickness * context.scale.eps_pi;
+    const bool stalled =
+        plane.weak && plane.stalled_keyframes >= context.options.weak_max_keyframes;
+    if (starved || thick || stalled) dropped.push_back(plane.id);
+    ++plane.age_keyframes;
+    ++plane.stalled_keyframes;
+  }
+  for (const PlaneId id : dropped) erase_plane(map, id);
+  return static_cast<int>(dropped.size());
+}
+
+}  // namespace planecast::slam

@@ -1,0 +1,132 @@
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "slam/geometry/point_clusters.h"
+#include "slam/stages/plane_steps.h"
+
+namespace planecast::slam {
+
+namespace {
+
+const double kMinCosine = std::cos(15.0 * 3.14159265358979323846 / 180.0);
+constexpr double kMaxCentroidDistance = 1.5;  ///< in eps_d
+constexpr double kPaperMinCosine = 0.8;       ///< T_theta [P]
+constexpr double kPaperMaxOffset = 10.0;      ///< T_d in eps_d [P]
+constexpr std::size_t kMostCompared = 400;
+
+/// The paper's own conditions, with its d/|d| read as d/|n|.
+bool same_by_paper(const Plane& a, const Plane& b, const PlaneScale& scale) {
+  return std::abs(a.normal.dot(b.normal)) > kPaperMinCosine &&
+         std::abs(a.offset - b.offset) < kPaperMaxOffset * scale.eps_d;
+}
+
+Eigen::Vector3d centroid_of(const PlanePoints& points) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : points.positions) sum += p;
+  return sum / points.size();
+}
+
+std::vector<Eigen::Vector3d> thinned(const std::vector<Eigen::Vector3d>& points) {
+  const std::size_t step =
+      std::max<std::size_t>(1, (points.size() + kMostCompared - 1) / kMostCompared);
+  std::vector<Eigen::Vector3d> result;
+  for (std::size_t i = 0; i < points.size(); i += step) result.push_back(points[i]);
+  return result;
+}
+
+bool extents_touch(const PlanePoints& a, const PlanePoints& b, const PlaneScale& scale) {
+  const std::vector<Eigen::Vector3d> points_a = thinned(a.positions);
+  const std::vector<Eigen::Vector3d> points_b = thinned(b.positions);
+  const double link = std::max(link_of(points_a, scale), link_of(points_b, scale));
+  return gap_between(points_a, points_b) < link;
+}
+
+PlaneSupport joined(const PlaneSupport& a, const PlaneSupport& b) {
+  const auto split = [](const auto& vector, const PlaneSupport& support) {
+    return vector.begin() + static_cast<std::ptrdiff_t>(support.landmarks.size());
+  };
+  // Landmarks of both first, then the depth points of both.
+  const auto join = [&](const auto& of_a, const auto& of_b) {
+    auto result = of_a;
+    result.insert(split(result, a), of_b.begin(), split(of_b, b));
+    result.insert(result.end(), split(of_b, b), of_b.end());
+    return result;
+  };
+  PlaneSupport result;
+  result.landmarks = a.landmarks;
+  result.landmarks.insert(result.landmarks.end(), b.landmarks.begin(), b.landmarks.end());
+  result.points.positions = join(a.points.positions, b.points.positions);
+  result.points.view_from = join(a.points.view_from, b.points.view_from);
+  result.points.band = join(a.points.band, b.points.band);
+  return result;
+}
+
+bool fits_jointly(const Plane& a, const PlaneSupport& both, const PlaneContext& context) {
+  Plane trial = a;
+  if (!refit_robustly(trial, both, context)) return false;
+  update_figures(trial, both, context);
+  return trial.rms < context.scale.eps_pi;
+}
+
+bool same_plane(const Plane& a, const Plane& b, const PlaneSupport& support_a,
+                const PlaneSupport& support_b, const PlaneContext& context) {
+  if (support_a.points.size() == 0 || support_b.points.size() == 0) return false;
+  if (context.options.merge == PlaneMerge::kPaper) return same_by_paper(a, b, context.scale);
+  if (a.normal.dot(b.normal) < kMinCosine) return false;
+  const double limit = kMaxCentroidDistance * context.scale.eps_d;
+  if (std::abs(a.signed_distance(centroid_of(support_b.points))) > limit) return false;
+  if (std::abs(b.signed_distance(centroid_of(support_a.points))) > limit) return false;
+  return extents_touch(support_a.points, support_b.points, context.scale) &&
+         fits_jointly(a, joined(support_a, support_b), context);
+}
+
+template <typename T>
+void unite(std::vector<T>& into, const std::vector<T>& from) {
+  into.insert(into.end(), from.begin(), from.end());
+  std::sort(into.begin(), into.end());
+  into.erase(std::unique(into.begin(), into.end()), into.end());
+}
+
+/// `into` takes over everything of `from`, which is erased. Its frame moves only as a refit moves
+/// it.
+void take_over(Map& map, PlaneId into, PlaneId from, PlaneSupport& support_into,
+               PlaneSupport& support_from, const PlaneContext& context) {
+  for (const LandmarkId id : support_from.landmarks) map.landmarks.at(id).plane = into;
+  const Plane old = map.planes.at(from);
+  map.planes.erase(from);
+  Plane& plane = map.planes.at(into);
+  plane.depth_points.insert(plane.depth_points.end(), old.depth_points.begin(),
+                            old.depth_points.end());
+  plane.depth_anchors.insert(plane.depth_anchors.end(), old.depth_anchors.begin(),
+                             old.depth_anchors.end());
+  unite(plane.observers, old.observers);
+  unite(plane.merged_from, old.merged_from);
+  unite(plane.merged_from, {from});
+  plane.first_frame = std::min(plane.first_frame, old.first_frame);
+  plane.stalled_keyframes = 0;
+  support_into = joined(support_into, support_from);
+  support_from = {};
+  refit_robustly(plane, support_into, context);
+  update_figures(plane, support_into, context);
+}
+
+}  // namespace
+
+int merge_planes(Map& map, const PlaneContext& context) {
+  std::vector<PlaneSupport> support = gather_support(map, context);
+  int merged = 0;
+  for (PlaneId a = 0; a < map.planes.next_id(); ++a) {
+    for (PlaneId b = a + 1; b < map.planes.next_id(); ++b) {
+      if (!map.planes.contains(a) || !map.planes.contains(b)) continue;
+      if (!same_plane(map.planes.at(a), map.planes.at(b), support[a], support[b], context))
+        continue;
+      take_over(map, a, b, support[a], support[b], context);
+      ++merged;
+      b = a;  // what the merged plane now touches may have been passed
+    }
+  }
+  return merged;
+}
+
+}  // namespace planecast::slam

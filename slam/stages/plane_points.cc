@@ -1,0 +1,176 @@
+#include "slam/stages/plane_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <tuple>
+
+#include "slam/geometry/depth_noise.h"
+#include "slam/segmentation/plane_segmenter.h"
+
+namespace planecast::slam {
+
+namespace {
+
+constexpr double kMaxBand = 2.5;
+/// [D] Depth samples per image row: enough for a plane of a hundredth of the image to have 8.
+constexpr int kSamplesPerRow = 32;
+
+void append_landmarks(const Map& map, const Keyframe& keyframe, const PlaneContext& context,
+                      KeyframePoints& out) {
+  for (std::size_t k = 0; k < keyframe.landmarks.size(); ++k) {
+    const Landmark* landmark = map.landmarks.find(keyframe.landmarks[k]);
+    if (landmark == nullptr) continue;
+    const double z = (keyframe.cam_from_world * landmark->position).z();
+    if (!(z > 0.0)) continue;
+    out.points.positions.push_back(landmark->position);
+    out.points.view_from.push_back(landmark->view_from);
+    out.points.band.push_back(band_of(context, z));
+    out.landmark.push_back(landmark->id);
+    out.plane.push_back(map.planes.contains(landmark->plane) ? landmark->plane : kNone);
+    out.label.push_back(k < keyframe.labels.size() ? keyframe.labels[k] : 0);
+    const Eigen::Vector2f pixel = keyframe.features->keypoints[k].pixel;
+    out.pixel.emplace_back(pixel.x(), pixel.y(), 0.0);
+    out.point_cam.push_back(Eigen::Vector3f::Zero());
+  }
+}
+
+void append_depth_sample(const Keyframe& keyframe, const PlaneContext& context, int x, int y,
+                         KeyframePoints& out) {
+  const double z = keyframe.depth.at<float>(y, x);
+  if (!(z > 0.0)) return;
+  const double band = band_of(context, z);
+  if (3.0 * depth_sigma_m(z) > kMaxBand * context.scale.eps_d) return;
+  const Eigen::Vector2d raw(x, y);
+  const Eigen::Vector2d pixel =
+      context.camera.has_distortion() ? context.camera.undistort(raw) : raw;
+  const Eigen::Vector3d point_cam = z * context.camera.ray(pixel);
+  const Pose world_from_cam = keyframe.cam_from_world.inverse();
+  out.points.positions.push_back(world_from_cam * point_cam);
+  out.points.view_from.push_back(world_from_cam.linear() * -point_cam.normalized());
+  out.points.band.push_back(band);
+  out.landmark.push_back(kNone);
+  out.plane.push_back(kNone);
+  out.label.push_back(label_at(keyframe.label_image, raw.cast<float>()));
+  out.pixel.emplace_back(pixel.x(), pixel.y(), 0.0);
+  out.point_cam.push_back(point_cam.cast<float>());
+}
+
+void append_depth_samples(const Keyframe& keyframe, const PlaneContext& context,
+                          KeyframePoints& out) {
+  if (!context.rgbd || keyframe.depth.empty()) return;
+  const int step = std::max(1, keyframe.depth.cols / kSamplesPerRow);
+  for (int y = step / 2; y < keyframe.depth.rows; y += step) {
+    for (int x = step / 2; x < keyframe.depth.cols; x += step) {
+      append_depth_sample(keyframe, context, x, y, out);
+    }
+  }
+}
+
+}  // namespace
+
+double band_of(const PlaneContext& context, double z_m) {
+  if (!context.rgbd || !(context.scale.eps_d > 0.0)) return 1.0;
+  return std::clamp(3.0 * depth_sigma_m(z_m) / context.scale.eps_d, 1.0, kMaxBand);
+}
+
+KeyframePoints gather_points(const Map& map, KeyframeId id, const PlaneContext& context) {
+  KeyframePoints result;
+  const Keyframe* keyframe = map.keyframes.find(id);
+  if (keyframe == nullptr || keyframe->features == nullptr) return result;
+  append_landmarks(map, *keyframe, context, result);
+  append_depth_samples(*keyframe, context, result);
+  result.has_masks = !keyframe->label_image.empty() ||
+                     std::any_of(keyframe->labels.begin(), keyframe->labels.end(),
+                                 [](int label) { return label > 0; });
+  return result;
+}
+
+std::vector<PlaneSupport> gather_support(const Map& map, const PlaneContext& context) {
+  std::vector<PlaneSupport> result(static_cast<std::size_t>(map.planes.next_id()));
+  for (const Landmark& landmark : map.landmarks) {
+    if (!map.planes.contains(landmark.plane)) continue;
+    PlaneSupport& support = result[static_cast<std::size_t>(landmark.plane)];
+    const Keyframe* first = landmark.observations.empty()
+                                ? nullptr
+                                : map.keyframes.find(landmark.observations.front().keyframe);
+    const double z = first == nullptr ? 0.0 : (first->cam_from_world * landmark.position).z();
+    support.landmarks.push_back(landmark.id);
+    support.points.positions.push_back(landmark.position);
+    support.points.view_from.push_back(landmark.view_from);
+    support.points.band.push_back(band_of(context, std::max(z, 0.4)));
+  }
+  for (const Plane& plane : map.planes) {
+    PlanePoints& points = result[static_cast<std::size_t>(plane.id)].points;
+    for (std::size_t i = 0; i < plane.depth_points.size(); ++i) {
+      const DepthAnchor& anchor = plane.depth_anchors[i];
+      const Pose cam_from_world = map.keyframe_pose(anchor.keyframe);
+      points.positions.push_back(plane.depth_points[i]);
+      points.view_from.push_back(
+          (cam_from_world.inverse().translation() - plane.depth_points[i]).normalized());
+      points.band.push_back(band_of(context, anchor.point_cam.z()));
+    }
+  }
+  return result;
+}
+
+void update_figures(Plane& plane, const PlaneSupport& support, const PlaneContext& context) {
+  double sum = 0.0;
+  double weight = 0.0;
+  for (int i = 0; i < support.points.size(); ++i) {
+    const double distance = plane.signed_distance(support.points.positions[i]);
+    const double w = 1.0 / (support.points.band[i] * support.points.band[i]);
+    sum += w * distance * distance;
+    weight += w;
+  }
+  plane.rms = weight > 0.0 ? std::sqrt(sum / weight) : 0.0;
+  plane.inliers = static_cast<int>(support.landmarks.size());
+  plane.weak = support.points.size() < context.options.strong_inliers;
+}
+
+void add_depth_point(Plane& plane, KeyframeId keyframe, const Eigen::Vector3d& position,
+                     const Eigen::Vector3f& point_cam) {
+  plane.depth_points.push_back(position);
+  plane.depth_anchors.push_back({keyframe, point_cam});
+}
+
+void bound_depth_points(Plane& plane, int most, double cell) {
+  while (static_cast<int>(plane.depth_points.size()) > most) {
+    const Pose plane_from_world = plane.world_from_plane().inverse();
+    // (cell column, cell row, -index): sorted, the latest of each cell comes first.
+    std::vector<std::tuple<int, int, int>> cells;
+    for (std::size_t i = 0; i < plane.depth_points.size(); ++i) {
+      const Eigen::Vector3d p = plane_from_world * plane.depth_points[i] / cell;
+      cells.emplace_back(static_cast<int>(std::floor(p.x())), static_cast<int>(std::floor(p.y())),
+                         -static_cast<int>(i));
+    }
+    std::sort(cells.begin(), cells.end());
+    std::vector<std::size_t> kept;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      const auto& [col, row, index] = cells[k];
+      if (k > 0 && std::get<0>(cells[k - 1]) == col && std::get<1>(cells[k - 1]) == row) continue;
+      kept.push_back(static_cast<std::size_t>(-index));
+    }
+    std::sort(kept.begin(), kept.end());
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+      plane.depth_points[k] = plane.depth_points[kept[k]];
+      plane.depth_anchors[k] = plane.depth_anchors[kept[k]];
+    }
+    plane.depth_points.resize(kept.size());
+    plane.depth_anchors.resize(kept.size());
+    cell *= 1.3;
+  }
+}
+
+void erase_plane(Map& map, PlaneId plane) {
+  for (Landmark& landmark : map.landmarks) {
+    if (landmark.plane == plane) landmark.plane = kNone;
+  }
+  map.planes.erase(plane);
+}
+
+double link_of(const std::vector<Eigen::Vector3d>& support, const PlaneScale& scale) {
+  return std::clamp(linking_distance(support), 2.0 * scale.eps_d, 6.0 * scale.eps_d);
+}
+
+}  // namespace planecast::slam

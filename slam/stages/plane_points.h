@@ -1,0 +1,65 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "slam/data/camera.h"
+#include "slam/data/map.h"
+#include "slam/fitting/plane_model.h"
+#include "slam/stages/map_planes.h"
+
+namespace planecast::slam {
+
+/// What every plane step needs to know.
+struct PlaneContext {
+  PlaneMappingOptions options;
+  PlaneScale scale;
+  Camera camera;
+  bool rgbd = false;
+};
+
+/// A point's inlier band, as a multiple of eps_d: in RGB-D max(eps_d, 3 sigma_z(z)) at depth z_m in
+/// metres, bounded to 2.5 eps_d, beyond which depth is too vague to tell planes; mono: 1.
+double band_of(const PlaneContext& context, double z_m);
+
+/// What one keyframe shows that planes can be made of: its landmarks and, in RGB-D, samples of its
+/// depth on a coarse grid. All vectors are parallel.
+struct KeyframePoints {
+  PlanePoints points;
+  std::vector<LandmarkId> landmark;        ///< kNone: a depth sample
+  std::vector<PlaneId> plane;              ///< that owns the landmark, or has taken the sample
+  std::vector<int> label;                  ///< mask instance, 0 = none
+  std::vector<Eigen::Vector3d> pixel;      ///< undistorted, third coordinate 0
+  std::vector<Eigen::Vector3f> point_cam;  ///< of depth samples
+  bool has_masks = false;                  ///< somebody segmented this image
+
+  int size() const { return points.size(); }
+};
+KeyframePoints gather_points(const Map& map, KeyframeId keyframe, const PlaneContext& context);
+
+/// Everything that supports a plane: its landmarks first, then its depth points.
+struct PlaneSupport {
+  PlanePoints points;
+  std::vector<LandmarkId> landmarks;  ///< of the first landmarks.size() points
+};
+/// Support of all planes by plane id (empty for ids that are gone), in one pass over the landmarks.
+std::vector<PlaneSupport> gather_support(const Map& map, const PlaneContext& context);
+
+/// Weighted RMS and landmark count into the plane, whether it is weak, from its support.
+void update_figures(Plane& plane, const PlaneSupport& support, const PlaneContext& context);
+
+/// Adds a depth sample to the plane.
+void add_depth_point(Plane& plane, KeyframeId keyframe, const Eigen::Vector3d& position,
+                     const Eigen::Vector3f& point_cam);
+/// Thins depth points to at most `most`, evenly over the plane: one per cell of a grid that is made
+/// coarser until they fit; the latest stay.
+void bound_depth_points(Plane& plane, int most, double cell);
+
+/// Disowns the plane's landmarks and erases it.
+void erase_plane(Map& map, PlaneId plane);
+
+/// Distance within which points of a plane count as connected, from its support's spacing, between
+/// 2 and 6 eps_d.
+double link_of(const std::vector<Eigen::Vector3d>& support, const PlaneScale& scale);
+
+}  // namespace planecast::slam

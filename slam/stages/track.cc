@@ -1,0 +1,172 @@
+#include "slam/stages/track.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "slam/features/matching.h"
+
+namespace planecast::slam {
+namespace {
+
+/// The keyframe that sees most of the matched landmarks; the newest among equals.
+KeyframeId reference_of(const Map& map, const std::vector<LandmarkId>& matches) {
+  std::vector<int> votes(static_cast<std::size_t>(map.keyframes.next_id()), 0);
+  for (const LandmarkId id : matches) {
+    if (id == kNone) continue;
+    for (const Observation& observation : map.landmarks.at(id).observations) {
+      ++votes[static_cast<std::size_t>(observation.keyframe)];
+    }
+  }
+  KeyframeId best = kNone;
+  int most = 0;
+  for (KeyframeId id = 0; id < map.keyframes.next_id(); ++id) {
+    if (votes[static_cast<std::size_t>(id)] >= std::max(most, 1)) {
+      most = votes[static_cast<std::size_t>(id)];
+      best = id;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+Tracker::Tracker(const TrackOptions& options, const Camera& camera, bool rgbd)
+    : options_(options), camera_(camera), rgbd_(rgbd) {}
+
+void Tracker::start(const ImageFeatures& image, const PoseEstimate& estimate,
+                    KeyframeId reference) {
+  lost_ = false;
+  last_image_ = image;
+  last_ = estimate;
+  velocity_ = Pose::Identity();
+  reference_ = reference;
+  cam_from_reference_ = Pose::Identity();
+  last_keyframe_frame_ = image.frame_index;
+}
+
+void Tracker::follow_map(const Map& map) {
+  if (lost_) return;
+  for (LandmarkId& id : last_.matches) {
+    if (id != kNone) id = map.resolve(id);
+  }
+  last_.cam_from_world = cam_from_reference_ * map.keyframe_pose(reference_);
+}
+
+PoseEstimate Tracker::match_from_last(const ImageFeatures& image, const Map& map,
+                                      const Pose& predicted, double window_px) const {
+  std::vector<Expectation> expectations;
+  for (std::size_t k = 0; k < last_.matches.size(); ++k) {
+    const Landmark* landmark = map.landmarks.find(last_.matches[k]);
+    if (landmark == nullptr) continue;
+    const Eigen::Vector3d point_cam = predicted * landmark->position;
+    if (point_cam.z() <= 0.0) continue;
+    const Keypoint& seen = last_image_.features->keypoints[k];
+    Expectation expectation;
+    expectation.landmark = landmark->id;
+    expectation.pixel = camera_.project(point_cam);
+    if (!camera_.contains(expectation.pixel)) continue;
+    expectation.radius_px = window_px * options_.localise.levels.scale(seen.octave);
+    expectation.min_octave = seen.octave - 1;
+    expectation.max_octave = seen.octave + 1;
+    expectation.descriptor = last_image_.features->descriptors[k];
+    expectation.angle_deg = seen.angle_deg;
+    expectations.push_back(expectation);
+  }
+  ExpectationMatchOptions match;
+  match.check_rotation = true;
+  std::vector<LandmarkId> matches(image.features->keypoints.size(), kNone);
+  int count = 0;
+  for (const auto& [k, e] : match_expectations(*image.features, expectations, {}, match)) {
+    matches[static_cast<std::size_t>(k)] = expectations[static_cast<std::size_t>(e)].landmark;
+    ++count;
+  }
+  if (count < options_.min_motion_matches) return {};
+  return optimise_matches(map, camera_, *image.features, predicted, std::move(matches),
+                          options_.localise.levels);
+}
+
+PoseEstimate Tracker::predict_and_match(const ImageFeatures& image, const Map& map) const {
+  const double window_px =
+      options_.motion_window_px * std::max(camera_.width, camera_.height) / 640.0;
+  const Pose predicted = velocity_ * last_.cam_from_world;
+  for (const double widen : {1.0, 2.0, 4.0}) {
+    const Pose& prior = widen < 3.0 ? predicted : last_.cam_from_world;
+    PoseEstimate estimate = match_from_last(image, map, prior, widen * window_px);
+    if (estimate.inliers >= options_.min_motion_inliers) return estimate;
+  }
+  if (map.keyframes.contains(reference_)) {
+    std::optional<PoseEstimate> estimate =
+        match_keyframe(map, camera_, *image.features, reference_, options_.relocalise);
+    if (estimate) return *estimate;
+  }
+  return {};
+}
+
+bool Tracker::wants_keyframe(const ImageFeatures& image, const Map& map,
+                             const TrackResult& result) const {
+  const int since = image.frame_index - last_keyframe_frame_;
+  // Depth counts as an observer of its own.
+  const int min_observers = (map.keyframes.size() <= 2 ? 2 : 3) - (rgbd_ ? 1 : 0);
+  int reference_landmarks = 0;
+  for (const LandmarkId id : map.keyframes.at(result.reference).landmarks) {
+    if (id == kNone) continue;
+    reference_landmarks +=
+        static_cast<int>(map.landmarks.at(id).observations.size()) >= min_observers;
+  }
+  int close_tracked = 0;
+  int close_untracked = 0;
+  if (rgbd_) {
+    for (std::size_t k = 0; k < image.features->keypoints.size(); ++k) {
+      if (image.features->keypoints[k].depth <= 0.0F) continue;
+      (result.estimate.matches[k] != kNone ? close_tracked : close_untracked) += 1;
+    }
+  }
+  const bool needs_close = rgbd_ && close_tracked < 100 && close_untracked > 70;
+  const double share = rgbd_ ? options_.keyframe_share_rgbd : options_.keyframe_share_mono;
+  const bool weaker = result.estimate.inliers < share * reference_landmarks || needs_close;
+  if (!weaker) return false;
+  if (since >= options_.max_keyframe_interval) return true;
+  return since >= (result.estimate.inliers < options_.weak_inliers ? 1
+                                                                   : options_.min_keyframe_interval);
+}
+
+TrackResult Tracker::track(const ImageFeatures& image, const Map& map) {
+  TrackResult result;
+  PoseEstimate estimate;
+  if (!lost_) {
+    estimate = predict_and_match(image, map);
+    if (estimate.inliers > 0) {
+      estimate = search_local_map(map, camera_, *image.features, estimate,
+                                  local_keyframes(map, estimate.matches, options_.localise), 1.0,
+                                  options_.localise);
+    }
+    result.tracked = estimate.inliers >= options_.min_inliers;
+  }
+  if (!result.tracked) {
+    std::optional<PoseEstimate> found =
+        relocalise(map, camera_, *image.features, options_.relocalise);
+    if (found) {
+      estimate = std::move(*found);
+      result.tracked = result.relocalised = true;
+    }
+  }
+  if (!result.tracked) {
+    lost_ = true;
+    result.reason = image.features->size() < 200 ? "too few features" : "too few matches";
+    return result;
+  }
+  const bool continuous = !lost_ && !result.relocalised;
+  velocity_ = continuous ? estimate.cam_from_world * last_.cam_from_world.inverse()
+                         : Pose::Identity();
+  lost_ = false;
+  last_image_ = image;
+  last_ = estimate;
+  reference_ = result.reference = reference_of(map, estimate.matches);
+  cam_from_reference_ =
+      estimate.cam_from_world * map.keyframes.at(reference_).cam_from_world.inverse();
+  result.estimate = std::move(estimate);
+  result.want_keyframe = wants_keyframe(image, map, result);
+  return result;
+}
+
+}  // namespace planecast::slam

@@ -1,0 +1,257 @@
+#include "slam/system.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "slam/stages/stopwatch.h"
+
+namespace planecast::slam {
+namespace {
+
+/// One set of pyramid levels and one seed for every stage.
+SystemOptions with_common_values(SystemOptions options) {
+  const ScaleLevels levels = options.orb.levels;
+  options.initialise.levels = levels;
+  options.initialise.seed = options.seed;
+  options.track.localise.levels = levels;
+  options.track.relocalise.localise.levels = levels;
+  options.track.relocalise.seed = options.seed;
+  options.mapping.rgbd = options.rgbd;
+  options.mapping.points.levels = levels;
+  options.mapping.bundle.levels = levels;
+  options.mapping.planes.seed = options.seed;
+  return options;
+}
+
+/// Depth at a raw pixel; 0 where the 3x3 window disagrees, as at the edge of an object.
+float depth_at(const cv::Mat& depth, const Eigen::Vector2f& raw, double max_depth_m) {
+  const int x = static_cast<int>(std::lround(raw.x()));
+  const int y = static_cast<int>(std::lround(raw.y()));
+  if (x < 1 || y < 1 || x >= depth.cols - 1 || y >= depth.rows - 1) return 0.0F;
+  const float centre = depth.at<float>(y, x);
+  if (!(centre > 0.0F) || centre > static_cast<float>(max_depth_m)) return 0.0F;
+  const float slack = 0.03F * centre;
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      const float other = depth.at<float>(y + dy, x + dx);
+      if (other > 0.0F && std::abs(other - centre) > slack) return 0.0F;
+    }
+  }
+  return centre;
+}
+
+PoseEstimate estimate_of_keyframe(const Keyframe& keyframe) {
+  PoseEstimate estimate;
+  estimate.cam_from_world = keyframe.cam_from_world;
+  estimate.matches = keyframe.landmarks;
+  estimate.inliers = static_cast<int>(
+      std::count_if(estimate.matches.begin(), estimate.matches.end(),
+                    [](LandmarkId id) { return id != kNone; }));
+  return estimate;
+}
+
+}  // namespace
+
+System::System(const SystemOptions& options, const Camera& camera,
+               std::unique_ptr<PlaneSegmenter> segmenter)
+    : options_(with_common_values(options)),
+      camera_(camera),
+      extractor_(std::make_unique<OrbExtractor>(options_.orb)),
+      initialiser_(options_.initialise, camera),
+      tracker_(options_.track, camera, options_.rgbd),
+      mapper_(options_.mapping, camera, std::move(segmenter)) {}
+
+System::~System() {
+  for (const InFlight& flight : in_flight_) flight.result.wait();
+}
+
+ImageFeatures System::prepare(const FrameInput& frame, bool initialised) const {
+  ImageFeatures image;
+  image.frame_index = frame.index;
+  image.timestamp = frame.timestamp;
+  image.grey_or_bgr = frame.image;
+  image.labels = frame.labels;
+  if (options_.rgbd) image.depth = frame.depth;
+  cv::Mat grey = frame.image;
+  if (frame.image.channels() == 3) cv::cvtColor(frame.image, grey, cv::COLOR_BGR2GRAY);
+  const int limit = initialised || options_.rgbd ? options_.orb.features : options_.initial_features;
+  auto features = std::make_shared<Features>(extractor_->extract(grey, camera_, limit));
+  if (!image.depth.empty()) {
+    for (Keypoint& keypoint : features->keypoints) {
+      keypoint.depth = depth_at(image.depth, keypoint.raw, options_.max_keypoint_depth_m);
+    }
+  }
+  image.features = std::move(features);
+  return image;
+}
+
+void System::restart() {
+  StageTimes ignored;
+  while (!in_flight_.empty()) take_over_due(in_flight_.back().visible_at, ignored);
+  working_map_ = Map();
+  visible_map_ = std::make_shared<const Map>();
+  initialiser_.reset();
+  tracker_ = Tracker(options_.track, camera_, options_.rgbd);
+  mapper_.reset();
+  next_job_ = {};
+  lost_frames_ = 0;
+}
+
+void System::start(const ImageFeatures& image, FrameTrack& result) {
+  Stopwatch watch;
+  const std::optional<ImageFeatures> reference = initialiser_.reference();
+  const InitialiseResult started =
+      options_.rgbd ? initialise_rgbd(image, camera_, options_.orb.levels,
+                                      options_.initialise.min_landmarks, working_map_)
+                    : initialiser_.try_image(image, working_map_);
+  if (!options_.rgbd) result.times.emplace_back("System (Mono) Initialization", watch.lap_ms());
+  if (!started.done) {
+    result.reason = started.reason;
+    return;
+  }
+  std::vector<ImageFeatures> images;
+  if (reference && !options_.rgbd) images.push_back(*reference);
+  images.push_back(image);
+  const KeyframeReport report = mapper_.start(working_map_, images);
+  result.mapping_times = report.times;
+  visible_map_ = std::make_shared<const Map>(working_map_);
+  const KeyframeId newest = map().keyframes.next_id() - 1;
+  tracker_.start(image, estimate_of_keyframe(map().keyframes.at(newest)), newest);
+  result.state = TrackState::kTracked;
+  result.keyframe = true;
+  result.reference = newest;
+  result.cam_from_world = map().keyframes.at(newest).cam_from_world;
+  result.inliers = static_cast<int>(map().landmarks.size());
+}
+
+void System::hand_over(const ImageFeatures& image, const TrackResult& tracked,
+                       FrameTrack& result) {
+  KeyframeJob job = std::exchange(next_job_, {});
+  job.image = image;
+  job.matches = tracked.estimate.matches;
+  job.reference = tracked.reference;
+  job.cam_from_reference = result.cam_from_reference;
+  const std::shared_future<Mapped> earlier =
+      in_flight_.empty() ? std::shared_future<Mapped>() : in_flight_.back().result;
+  InFlight flight;
+  flight.visible_at = image.frame_index + options_.mapping_delay;
+  if (!in_flight_.empty()) {
+    flight.visible_at = std::max(flight.visible_at, in_flight_.back().visible_at + 1);
+  }
+  flight.result =
+      std::async(options_.threads > 1 ? std::launch::async : std::launch::deferred,
+                 [this, earlier, job = std::move(job)] {
+                   if (earlier.valid()) earlier.wait();
+                   Mapped mapped;
+                   mapped.report = mapper_.insert(working_map_, job);
+                   mapped.map = std::make_shared<const Map>(working_map_);
+                   return mapped;
+                 })
+          .share();
+  in_flight_.push_back(std::move(flight));
+  tracker_.keyframe_requested(image.frame_index);
+  result.keyframe = true;
+}
+
+void System::take_over(InFlight flight, StageTimes& times) {
+  const Mapped& mapped = flight.result.get();
+  times.insert(times.end(), mapped.report.times.begin(), mapped.report.times.end());
+  visible_map_ = mapped.map;
+  tracker_.follow_map(map());
+}
+
+void System::take_over_due(int frame_index, StageTimes& times) {
+  while (!in_flight_.empty() && in_flight_.front().visible_at <= frame_index) {
+    InFlight flight = std::move(in_flight_.front());
+    in_flight_.pop_front();
+    take_over(std::move(flight), times);
+  }
+}
+
+FrameTrack System::track(const ImageFeatures& image) {
+  FrameTrack result;
+  take_over_due(image.frame_index, result.mapping_times);
+  if (lost_frames_ >= options_.restart_after_lost &&
+      static_cast<int>(map().keyframes.size()) < options_.restart_keyframes) {
+    restart();
+    result.restarted = true;
+  }
+  if (!initialised()) {
+    start(image, result);
+    return result;
+  }
+  Stopwatch watch;
+  const TrackResult tracked = tracker_.track(image, map());
+  result.times.emplace_back("Tracking", watch.lap_ms());
+  if (!tracked.tracked) {
+    ++lost_frames_;
+    result.state = TrackState::kLost;
+    result.reason = tracked.reason;
+    return result;
+  }
+  lost_frames_ = 0;
+  const PoseEstimate& estimate = tracked.estimate;
+  next_job_.visible.insert(next_job_.visible.end(), estimate.visible.begin(),
+                           estimate.visible.end());
+  for (const LandmarkId id : estimate.matches) {
+    if (id != kNone) next_job_.found.push_back(id);
+  }
+  result.state = TrackState::kTracked;
+  result.inliers = estimate.inliers;
+  result.cam_from_world = estimate.cam_from_world;
+  result.reference = tracked.reference;
+  result.cam_from_reference =
+      estimate.cam_from_world * map().keyframe_pose(tracked.reference).inverse();
+  if (tracked.want_keyframe) hand_over(image, tracked, result);
+  return result;
+}
+
+FinishResult System::finish() {
+  FinishResult result;
+  while (!in_flight_.empty()) {
+    take_over_due(in_flight_.back().visible_at, result.mapping_times);
+  }
+  if (working_map_.keyframes.size() < 2) return result;
+  BundleOptions bundle = options_.mapping.bundle;
+  bundle.iterations = 20;
+  bundle.refine_focal = camera_.guessed;
+  result.global = global_bundle(working_map_, camera_, bundle);
+  if (options_.mapping.map_planes) {
+    mapper_.follow_map(working_map_);
+    if (options_.refine_jointly && !working_map_.planes.empty()) {
+      JointOptions joint;
+      joint.bundle = bundle;
+      joint.plane_sigma = mapper_.plane_scale().eps_pi;
+      result.joint = refine_jointly(working_map_, camera_, joint);
+    }
+  }
+  for (const Landmark& landmark : working_map_.landmarks) {
+    working_map_.update_landmark_summary(landmark.id, options_.orb.levels);
+  }
+  visible_map_ = std::make_shared<const Map>(working_map_);
+  return result;
+}
+
+std::optional<PoseEstimate> System::localise(
+    const ImageFeatures& image, const std::optional<Pose>& prior_cam_from_world) const {
+  if (!initialised()) return std::nullopt;
+  const LocaliseOptions& options = options_.track.localise;
+  if (prior_cam_from_world) {
+    PoseEstimate prior;
+    prior.cam_from_world = *prior_cam_from_world;
+    prior.matches.assign(image.features->keypoints.size(), kNone);
+    std::vector<KeyframeId> everywhere;
+    for (const Keyframe& keyframe : map().keyframes) everywhere.push_back(keyframe.id);
+    PoseEstimate estimate =
+        search_local_map(map(), camera_, *image.features, prior, everywhere, 2.0, options);
+    if (estimate.inliers >= options_.track.min_inliers) {
+      estimate = search_local_map(map(), camera_, *image.features, estimate, everywhere, 1.0, options);
+      if (estimate.inliers >= options_.track.min_inliers) return estimate;
+    }
+  }
+  return relocalise(map(), camera_, *image.features, options_.track.relocalise);
+}
+
+}  // namespace planecast::slam

@@ -1,0 +1,319 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "engine/evaluate/overlay.h"
+#include "engine/evaluate/patch.h"
+#include "engine/evaluate/plane_matching.h"
+#include "engine/evaluate/planes.h"
+#include "test/unit/engine/output_test_files.h"
+
+namespace planecast::engine {
+namespace {
+
+constexpr double kMapScale = 0.4;  ///< map units in a metre
+
+/// A room's corner seen by a camera that sways in front of it: y down, floor at y = 1.
+class PlaneEvaluation : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    camera = test_camera();
+    const Eigen::Vector3d x = Eigen::Vector3d::UnitX();
+    truth = {make_rectangle(0, {0.0, 1.0, 3.0}, -Eigen::Vector3d::UnitY(), x, 3.0, 2.0),
+             make_rectangle(1, {0.0, 0.0, 4.0}, -Eigen::Vector3d::UnitZ(), x, 3.0, 2.0),
+             make_rectangle(2, {-0.8, 0.4, 3.0}, -Eigen::Vector3d::UnitY(), x, 0.8, 0.6),
+             make_rectangle(3, {0.8, 0.4, 3.0}, -Eigen::Vector3d::UnitY(), x, 0.8, 0.6),
+             make_rectangle(4, {0.0, 0.0, -4.0}, Eigen::Vector3d::UnitZ(), x, 3.0, 2.0)};  // behind
+    for (int i = 0; i < 60; ++i) {
+      const double a = 0.1 * i;
+      truth_poses.push_back(
+          {i / 30.0, make_pose({0.05 * std::sin(a), 0.08 * std::cos(a), 0.0},
+                               {0.4 * std::cos(a), 0.2 * std::sin(2.0 * a), 0.3 * std::sin(a)})});
+    }
+    estimate = in_own_world();
+  }
+
+  /// The truth without error, as a monocular system would have it: another world, another scale.
+  Reconstruction in_own_world() const {
+    slam::Similarity map_from_world;
+    map_from_world.scale = kMapScale;
+    map_from_world.rotation = make_pose({0.4, -0.2, 0.1}, {}).linear();
+    map_from_world.translation = Eigen::Vector3d(1.0, -0.5, 2.0);
+    Reconstruction map;
+    map.camera = camera;
+    for (std::size_t t = 0; t < 4; ++t) {
+      map.planes.push_back(transformed(map_from_world, truth[t]));
+      map.planes.back().id = 10 + static_cast<int>(t);
+      for (const Eigen::Vector3d& position : Patch(truth[t]).grid(10)) {
+        MapPoint point;
+        point.position = map_from_world * position;
+        point.plane = map.planes.back().id;
+        map.points.push_back(point);
+      }
+    }
+    for (std::size_t i = 0; i < truth_poses.size(); ++i) {
+      FrameRecord frame;
+      frame.index = static_cast<int>(i);
+      frame.timestamp = truth_poses[i].timestamp;
+      frame.world_from_cam = slam::Pose::Identity();
+      frame.world_from_cam->linear() =
+          map_from_world.rotation * truth_poses[i].world_from_cam.linear();
+      frame.world_from_cam->translation() =
+          map_from_world * truth_poses[i].world_from_cam.translation();
+      map.frames.push_back(frame);
+    }
+    return map;
+  }
+
+  PlaneResult evaluate() const {
+    return evaluate_planes(estimate, truth, truth_poses, camera).value_or(PlaneResult());
+  }
+  OverlayResult drift(const OverlayOptions& options = {}) const {
+    return evaluate_overlay(estimate, truth, truth_poses, camera, options)
+        .value_or(OverlayResult());
+  }
+  /// Moves a plane and its points along its normal, in metres.
+  void lift(std::size_t plane, double metres) {
+    PlaneRecord& moved = estimate.planes[plane];
+    const Eigen::Vector3d step = metres * kMapScale * moved.normal;
+    moved.offset -= metres * kMapScale;
+    moved.origin += step;
+    for (Eigen::Vector3d& vertex : moved.polygon) vertex += step;
+    for (MapPoint& point : estimate.points) {
+      if (point.plane == moved.id) point.position += step;
+    }
+  }
+
+  slam::Camera camera;
+  std::vector<PlaneRecord> truth;
+  std::vector<TimedPose> truth_poses;
+  Reconstruction estimate;
+};
+
+TEST_F(PlaneEvaluation, PerfectMapIsPerfect) {
+  const PlaneResult result = evaluate();
+  for (const PlaneScore& score : result.scores) {
+    EXPECT_EQ(score.truth, 4);  // the wall behind was never seen
+    EXPECT_DOUBLE_EQ(score.precision, 1.0);
+    EXPECT_DOUBLE_EQ(score.recall, 1.0);
+    EXPECT_DOUBLE_EQ(score.f, 1.0);
+    EXPECT_EQ(score.over_segmented + score.under_segmented, 0);
+  }
+  EXPECT_NEAR(result.trajectory.truth_from_estimate.scale, 1.0 / kMapScale, 1e-9);
+  EXPECT_NEAR(result.angle_deg.max, 0.0, 1e-6);
+  EXPECT_NEAR(result.offset_m.max, 0.0, 1e-9);
+  EXPECT_NEAR(result.point_rms_m.rms, 0.0, 1e-9);
+  EXPECT_EQ(result.rows[1].estimate_id, 11);
+  EXPECT_NEAR(result.rows[1].coverage, 1.0, 1e-9);
+  EXPECT_FALSE(result.rows[4].required);
+  EXPECT_DOUBLE_EQ(result.labels.rand_index, 1.0);
+  EXPECT_NEAR(result.labels.variation_of_information, 0.0, 1e-12);
+  EXPECT_DOUBLE_EQ(result.labels.segmentation_covering, 1.0);
+}
+
+TEST_F(PlaneEvaluation, LiftedPlaneFailsTheTighterToleranceFirst) {
+  lift(1, 0.03);
+  PlaneResult result = evaluate();
+  EXPECT_DOUBLE_EQ(result.scores[0].recall, 1.0);
+  EXPECT_DOUBLE_EQ(result.scores[1].recall, 0.75);
+  EXPECT_DOUBLE_EQ(result.scores[1].precision, 0.75);
+  EXPECT_NEAR(result.rows[1].offset_m, -0.03, 1e-9);
+  EXPECT_NEAR(result.offset_m.max, 0.03, 1e-9);
+  lift(1, 0.04);
+  result = evaluate();
+  EXPECT_DOUBLE_EQ(result.scores[0].recall, 0.75);
+  EXPECT_FALSE(result.rows[1].matched);
+  EXPECT_EQ(result.rows[1].estimate_id, 11);  // still shown as the nearest
+}
+
+TEST_F(PlaneEvaluation, FlippedNormalIsNoMatchAndShows180Degrees) {
+  PlaneRecord& floor = estimate.planes[0];
+  floor.normal = -floor.normal;
+  floor.offset = -floor.offset;
+  const PlaneResult result = evaluate();
+  EXPECT_DOUBLE_EQ(result.scores[0].recall, 0.75);
+  EXPECT_DOUBLE_EQ(result.scores[0].precision, 0.75);
+  EXPECT_NEAR(result.rows[0].angle_deg, 180.0, 1e-6);
+}
+
+TEST_F(PlaneEvaluation, TiltIsMeasuredInDegrees) {
+  PlaneRecord& wall = estimate.planes[1];
+  const Eigen::AngleAxisd tilt(4.0 * M_PI / 180.0, wall.x_axis);
+  wall.normal = tilt * wall.normal;
+  wall.offset = -wall.normal.dot(wall.origin);  // about the patch's centroid: no offset there
+  const PlaneResult result = evaluate();
+  EXPECT_NEAR(result.rows[1].angle_deg, 4.0, 1e-6);
+  EXPECT_NEAR(result.rows[1].offset_m, 0.0, 1e-9);
+  EXPECT_TRUE(result.rows[1].matched);
+}
+
+TEST_F(PlaneEvaluation, ScaledMapShowsUnderSe3) {
+  PlaneEvaluationOptions options;
+  options.trajectory.align = Alignment::kSe3;
+  const auto result = evaluate_planes(estimate, truth, truth_poses, camera, options);
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->scores[0].found, 0);
+  EXPECT_GT(result->trajectory.ate.rms, 0.1);
+}
+
+TEST_F(PlaneEvaluation, CoplanarTableTopsAreToldApart) {
+  // The right table's estimate is missing: the left one must not stand for it.
+  estimate.planes.erase(estimate.planes.begin() + 3);
+  const PlaneResult result = evaluate();
+  EXPECT_TRUE(result.rows[2].matched);
+  EXPECT_FALSE(result.rows[3].matched);
+  EXPECT_DOUBLE_EQ(result.scores[0].recall, 0.75);
+  EXPECT_DOUBLE_EQ(result.scores[0].precision, 1.0);
+}
+
+TEST_F(PlaneEvaluation, MergedTableTopsAreUnderSegmentation) {
+  const PlaneRecord& right = estimate.planes[3];
+  PlaneRecord& left = estimate.planes[2];
+  left.polygon = {left.polygon[0], right.polygon[1], right.polygon[2], left.polygon[3]};
+  estimate.planes.pop_back();
+  const PlaneResult result = evaluate();
+  EXPECT_EQ(result.scores[0].under_segmented, 1);
+  EXPECT_EQ(result.scores[0].matched, 3);
+  EXPECT_DOUBLE_EQ(result.scores[0].recall, 0.75);
+}
+
+TEST_F(PlaneEvaluation, PlaneInTwoPiecesIsOverSegmentation) {
+  PlaneRecord& whole = estimate.planes[1];
+  PlaneRecord piece = whole;
+  piece.id = 99;
+  const Eigen::Vector3d low = 0.6 * whole.polygon[0] + 0.4 * whole.polygon[1];
+  const Eigen::Vector3d high = 0.6 * whole.polygon[3] + 0.4 * whole.polygon[2];
+  piece.polygon = {whole.polygon[0], low, high, whole.polygon[3]};
+  whole.polygon = {low, whole.polygon[1], whole.polygon[2], high};
+  estimate.planes.push_back(piece);
+  const PlaneResult result = evaluate();
+  EXPECT_EQ(result.scores[0].over_segmented, 1);
+  EXPECT_EQ(result.scores[0].matched, 4);
+  EXPECT_DOUBLE_EQ(result.scores[0].precision, 0.8);
+  EXPECT_NEAR(result.rows[1].coverage, 0.6, 1.0 / 48.0);  // the larger piece, sampled on 48 cells
+}
+
+TEST_F(PlaneEvaluation, PlanesWithoutPolygonMatchByTheirPoints) {
+  for (PlaneRecord& plane : estimate.planes) plane.polygon.clear();
+  EXPECT_DOUBLE_EQ(evaluate().scores[1].f, 1.0);
+}
+
+TEST_F(PlaneEvaluation, LabelsDecideWhatWasSeen) {
+  PlaneEvaluationOptions options;
+  options.seen_labels = {{1, 2, 5}};  // planes 0, 1 and 4
+  const auto result = evaluate_planes(estimate, truth, truth_poses, camera, options);
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->scores[0].truth, 3);
+  EXPECT_EQ(result->scores[0].found, 2);
+  EXPECT_EQ(result->scores[0].matched, 4);
+}
+
+TEST_F(PlaneEvaluation, TableAndJsonShowTheFigures) {
+  const PlaneResult result = evaluate();
+  EXPECT_NE(format_table(result).find("1.000"), std::string::npos);
+  EXPECT_EQ(to_json(result).at("scores").at(0).at("matched"), 4);
+  EXPECT_EQ(to_json(result).at("planes").size(), 5U);
+}
+
+TEST(PointLabels, HandComputed) {
+  // Truth {a a b b}, estimate {x x x y}: pairs together 2 and 3, in both 1; RI = 1 - (3 + 2 - 2)
+  // / 6.
+  std::vector<MapPoint> points(4);
+  for (int i = 0; i < 4; ++i) points[static_cast<std::size_t>(i)].plane = i < 3 ? 5 : 6;
+  const PointLabelScore score = score_point_labels(points, {0, 0, 1, 1});
+  EXPECT_DOUBLE_EQ(score.rand_index, 0.5);
+  // H(truth) = ln 2; H(estimate) = ln 4 - 3/4 ln 3; joint {2,1,1}/4: 3/2 ln 2.
+  const double voi = 3.0 * std::log(2.0) - std::log(2.0) - (std::log(4.0) - 0.75 * std::log(3.0));
+  EXPECT_NEAR(score.variation_of_information, voi, 1e-12);
+  // Best overlaps: a with x 2/3, b with y 1/2.
+  EXPECT_NEAR(score.segmentation_covering, 0.5 * 2.0 / 3.0 + 0.5 * 0.5, 1e-12);
+}
+
+TEST(Patch, AreaCentroidAndHoles) {
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX();
+  PlaneRecord plane = make_rectangle(0, {1.0, 2.0, 3.0}, -Eigen::Vector3d::UnitY(), x, 4.0, 2.0);
+  plane.holes = {
+      make_rectangle(0, {2.0, 2.0, 3.0}, -Eigen::Vector3d::UnitY(), x, 1.0, 1.0).polygon};
+  plane.origin = {-3.0, 2.0, 1.0};  // anywhere on the plane
+  const Patch patch(plane);
+  EXPECT_NEAR(patch.area(), 7.0, 1e-12);
+  EXPECT_LT((patch.centroid() - Eigen::Vector3d((8.0 * 1.0 - 2.0) / 7.0, 2.0, 3.0)).norm(), 1e-12);
+  EXPECT_TRUE(patch.contains({1.0, 2.0, 3.0}));
+  EXPECT_TRUE(patch.contains({1.0, 7.0, 3.0}));  // its foot
+  EXPECT_FALSE(patch.contains({2.0, 2.0, 3.0}));
+  EXPECT_FALSE(patch.contains({4.0, 2.0, 3.0}));
+  EXPECT_EQ(patch.grid(8).size(), 64U - 8U);  // the hole covers 2 x 4 cells of 0.5 x 0.25
+}
+
+TEST_F(PlaneEvaluation, PerfectMapDoesNotDrift) {
+  const OverlayResult result = drift();
+  EXPECT_EQ(result.planes, 4);
+  EXPECT_EQ(result.frames, 60);
+  EXPECT_NEAR(result.aligned.drift_px.max, 0.0, 1e-6);
+  EXPECT_NEAR(result.tapped.drift_px.max, 0.0, 1e-6);
+  EXPECT_NEAR(result.aligned.jitter_px.max, 0.0, 1e-6);
+}
+
+TEST_F(PlaneEvaluation, ShiftedPrincipalPointIsDriftWithoutJitter) {
+  estimate.camera.cx += 3.0;
+  const OverlayResult result = drift();
+  EXPECT_NEAR(result.aligned.drift_px.rms, 3.0, 1e-6);
+  EXPECT_NEAR(result.aligned.drift_px.p95, 3.0, 1e-6);
+  EXPECT_NEAR(result.aligned.jitter_px.max, 0.0, 1e-6);
+}
+
+TEST_F(PlaneEvaluation, ShakingCameraIsJitter) {
+  // A turn by +-1 px of focal length on every other frame: second differences of 4 px.
+  for (std::size_t i = 0; i < estimate.frames.size(); ++i) {
+    const double angle = (i % 2 == 0 ? 1.0 : -1.0) / camera.fx;
+    estimate.frames[i].world_from_cam->rotate(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY()));
+  }
+  const OverlayResult result = drift();
+  // A turn moves a pixel by fx (1 + x^2): up to 1.37 px at the border of this image.
+  EXPECT_GT(result.aligned.drift_px.rms, 0.99);
+  EXPECT_LT(result.aligned.drift_px.max, 1.4);
+  EXPECT_GT(result.aligned.jitter_px.rms, 3.9);
+  EXPECT_LT(result.aligned.jitter_px.rms, 5.5);
+}
+
+TEST_F(PlaneEvaluation, LiftedPlaneSlidesUnderTheCamera) {
+  lift(0, 0.04);
+  const OverlayResult result = drift();
+  EXPECT_GT(result.aligned.drift_px.max, 4.0);
+  EXPECT_GT(result.tapped.drift_px.max, 1.0);
+  EXPECT_LT(result.tapped.drift_px.rms, result.aligned.drift_px.rms);
+}
+
+TEST_F(PlaneEvaluation, ScaleOfTheMapDoesNotMoveTappedContent) {
+  OverlayOptions options;
+  options.planes.trajectory.align = Alignment::kSe3;
+  options.planes.tolerances[0] = {10.0, 10.0};  // matches whatever the scale
+  options.planes.min_overlap = 0.0;
+  const OverlayResult result = drift(options);
+  ASSERT_GT(result.planes, 0);
+  EXPECT_GT(result.aligned.drift_px.rms, 10.0);
+}
+
+TEST_F(PlaneEvaluation, CausalPosesAreJudgedOnDemand) {
+  OverlayOptions options;
+  options.causal = true;
+  for (FrameRecord& frame : estimate.frames) {
+    frame.causal_world_from_cam = frame.world_from_cam;
+    frame.causal_world_from_cam->rotate(Eigen::AngleAxisd(0.01, Eigen::Vector3d::UnitY()));
+  }
+  EXPECT_GT(drift(options).aligned.drift_px.rms, 5.0);  // 0.01 rad x 525 px
+  EXPECT_NEAR(drift().aligned.drift_px.rms, 0.0, 1e-6);
+}
+
+TEST_F(PlaneEvaluation, NoMatchGivesEmptyFigures) {
+  estimate.planes.clear();
+  const OverlayResult result = drift();
+  EXPECT_EQ(result.planes, 0);
+  EXPECT_EQ(result.aligned.drift_px.count, 0);
+  EXPECT_NE(format_table(result).find("no plane"), std::string::npos);
+  EXPECT_DOUBLE_EQ(evaluate().scores[0].precision, 0.0);
+}
+
+}  // namespace
+}  // namespace planecast::engine

@@ -1,0 +1,215 @@
+#include "engine/scene/placement.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "engine/scene/default_scene.h"
+#include "engine/scene/metric_scale.h"
+#include "engine/scene/plane_outline.h"
+#include "engine/user_error.h"
+#include "table_world.h"
+
+namespace planecast::engine {
+namespace {
+
+constexpr double kExact = 1e-9;  // double arithmetic on a scene of a few metres
+
+/// A model 0.4 wide, 0.8 high and 0.2 deep whose base centre is not its origin.
+const ModelBox kBox(Eigen::Vector3d(-0.1, 0.1, -0.1), Eigen::Vector3d(0.3, 0.9, 0.1));
+const SizeUnit kMetres{1.0, 2.0};
+
+SceneObject object_at(const Place& place) {
+  SceneObject object;
+  object.model = "m.glb";
+  object.place = place;
+  object.where = "s.yaml:1";
+  return object;
+}
+
+PixelPlace tap_on_table() { return {10, {319.5 + 500.0 * 0.2 / 1.6, 239.5 + 500.0 * 0.5 / 1.6}}; }
+
+Eigen::Affine3d placed_pose(const Reconstruction& world, const SceneObject& object) {
+  return *place_object(world, object, kBox, kMetres, false).world_from_model(world.planes);
+}
+
+TEST(Placement, StandsOnThePlaneFacingTheCamera) {
+  const Reconstruction world = table_world();
+  SceneObject object = object_at(tap_on_table());
+  object.size = 0.4;
+  const Eigen::Affine3d world_from_model = placed_pose(world, object);
+  // The base's centre is on the tapped point, the top 0.4 m above it along the plane's normal.
+  EXPECT_LT(
+      (world_from_model * Eigen::Vector3d(0.1, 0.1, 0.0) - Eigen::Vector3d(0.2, 0.5, 1.6)).norm(),
+      kExact);
+  EXPECT_LT(
+      (world_from_model * Eigen::Vector3d(0.1, 0.9, 0.0) - Eigen::Vector3d(0.2, 0.1, 1.6)).norm(),
+      kExact);
+  // All four base corners lie on the plane.
+  for (const double x : {-0.1, 0.3}) {
+    for (const double z : {-0.1, 0.1}) {
+      EXPECT_NEAR((world_from_model * Eigen::Vector3d(x, 0.1, z)).y(), 0.5, kExact);
+    }
+  }
+  const Eigen::Vector3d front = (world_from_model.linear() * Eigen::Vector3d::UnitZ()).normalized();
+  const Eigen::Vector3d to_camera = Eigen::Vector3d(-0.2, 0.0, -1.6).normalized();
+  EXPECT_LT((front - to_camera).norm(), kExact);
+  EXPECT_GT(world_from_model.linear().determinant(), 0.0);
+}
+
+TEST(Placement, YawTurnsCounterClockwiseSeenFromAbove) {
+  const Reconstruction world = table_world();
+  SceneObject object = object_at(tap_on_table());
+  const Eigen::Vector3d before = placed_pose(world, object).linear() * Eigen::Vector3d::UnitZ();
+  object.yaw_deg = 90.0;
+  const Eigen::Vector3d after = placed_pose(world, object).linear() * Eigen::Vector3d::UnitZ();
+  EXPECT_LT((before.cross(after).normalized() - world.planes[1].normal).norm(), kExact);
+  EXPECT_NEAR(before.dot(after), 0.0, kExact);
+}
+
+TEST(Placement, KeepFollowsThePlanesAxis) {
+  const Reconstruction world = table_world();
+  SceneObject object = object_at(tap_on_table());
+  object.face = Face::kKeep;
+  const Eigen::Vector3d x = placed_pose(world, object).linear() * Eigen::Vector3d::UnitX();
+  EXPECT_LT((x.normalized() - world.planes[1].x_axis).norm(), kExact);
+}
+
+TEST(Placement, HangsOnWallsUpright) {
+  const Reconstruction world = table_world();
+  const SceneObject object = object_at(PlanePlace{"largest-vertical", {0.5, 0.5}});
+  const PlacedObject placed = place_object(world, object, kBox, kMetres, false);
+  EXPECT_TRUE(placed.hangs);
+  const Eigen::Affine3d world_from_model = *placed.world_from_model(world.planes);
+  // The centre of the back touches the wall's middle, front to the room, top up.
+  EXPECT_LT(
+      (world_from_model * Eigen::Vector3d(0.1, 0.5, -0.1) - Eigen::Vector3d(0.0, 0.05, 4.0)).norm(),
+      kExact);
+  EXPECT_LT(
+      (world_from_model.linear() * Eigen::Vector3d::UnitZ() - Eigen::Vector3d(0, 0, -1)).norm(),
+      kExact);
+  EXPECT_LT(
+      (world_from_model.linear() * Eigen::Vector3d::UnitY() - Eigen::Vector3d(0, -1, 0)).norm(),
+      kExact);
+}
+
+TEST(Placement, SizesCountInMetresOrMedianDepths) {
+  Reconstruction world = table_world();
+  SceneObject object = object_at(tap_on_table());
+  const auto scale = [&](const SizeUnit& unit) {
+    return place_object(world, object, kBox, unit, false).scale;
+  };
+  EXPECT_NEAR(scale(kMetres), 1.0, kExact);                  // its own size
+  EXPECT_NEAR(scale({0.0, 2.0}), 0.25 * 2.0 / 0.8, kExact);  // a quarter of the median depth
+  object.size = 0.4;
+  EXPECT_NEAR(scale(kMetres), 0.5, kExact);
+  EXPECT_NEAR(scale({3.0, 2.0}), 1.5, kExact);
+  EXPECT_NEAR(scale({0.0, 2.0}), 1.0, kExact);
+}
+
+TEST(Placement, AnchorsFollowTheirPlane) {
+  Reconstruction world = table_world();
+  const PlacedObject placed = place_object(world, object_at(tap_on_table()), kBox, kMetres, false);
+  const slam::Pose before = *placed.anchor.world_from_anchor(world.planes);
+  // A correction moves and turns the plane: content keeps its place and its upright stand on it.
+  slam::Pose correction = slam::Pose::Identity();
+  correction.rotate(Eigen::AngleAxisd(0.2, Eigen::Vector3d(1, 2, 3).normalized()));
+  correction.pretranslate(Eigen::Vector3d(0.3, -0.1, 0.2));
+  PlaneRecord& table = plane_by_id(world, 1);
+  table.normal = correction.linear() * table.normal;
+  table.x_axis = correction.linear() * table.x_axis;
+  table.origin = correction * table.origin;
+  table.offset = -table.normal.dot(table.origin);
+  const slam::Pose after = *placed.anchor.world_from_anchor(world.planes);
+  EXPECT_LT(((correction * before).matrix() - after.matrix()).norm(), kExact);
+  EXPECT_NEAR(table.normal.dot(after.translation()) + table.offset, 0.0, kExact);
+  world.planes.erase(world.planes.begin() + 1);
+  EXPECT_FALSE(placed.anchor.world_from_anchor(world.planes).has_value());
+}
+
+TEST(Placement, MergesReExpressAnchors) {
+  Reconstruction world = table_world();
+  const PlacedObject placed = place_object(world, object_at(tap_on_table()), kBox, kMetres, false);
+  PlaneRecord other = plane_by_id(world, 1);
+  other.id = 9;
+  other.origin += Eigen::Vector3d(0.4, 0.0, -0.2);
+  other.x_axis = Eigen::Vector3d::UnitZ();
+  const Anchor moved = move_anchor(placed.anchor, plane_by_id(world, 1), other);
+  EXPECT_EQ(moved.plane_id, 9);
+  EXPECT_LT((moved.world_from_anchor({other})->matrix() -
+             placed.anchor.world_from_anchor(world.planes)->matrix())
+                .norm(),
+            kExact);
+}
+
+TEST(Placement, RulesFindTheirPlanes) {
+  const Reconstruction world = table_world();
+  EXPECT_EQ(select_plane(world, "largest-horizontal", "t").id, 0);
+  EXPECT_EQ(select_plane(world, "floor", "t").id, 0);
+  EXPECT_EQ(select_plane(world, "nearest", "t").id, 1);
+  EXPECT_EQ(select_plane(world, "2", "t").id, 2);
+  try {
+    select_plane(world, "7", "s.yaml:4");
+    FAIL();
+  } catch (const UserError& error) {
+    EXPECT_STREQ(error.what(),
+                 "s.yaml:4: there is no plane '7'; planes: 0 (floor), 1 (horizontal), 2 (wall)");
+  }
+}
+
+TEST(MetricScale, KnownLengthsGiveMetres) {
+  Reconstruction world = table_world();
+  world.metric = false;
+  SceneFile scene;
+  scene.objects.push_back(object_at(tap_on_table()));
+  EXPECT_EQ(size_unit(world, scene, scene.objects[0], false).units_per_metre, 0.0);
+  EXPECT_EQ(size_unit(world, scene, scene.objects[0], false).median_depth, 2.0);
+  // The camera is 0.5 units above the table; the user measured 1.25 m.
+  scene.scale = ScaleHint{PlaneDistanceScale{1.25, std::nullopt}, "s.yaml:9"};
+  EXPECT_NEAR(size_unit(world, scene, scene.objects[0], false).units_per_metre, 0.4, kExact);
+  EdgeScale edge;
+  edge.frame = 10;
+  edge.from = world.camera.project({-0.3, 0.5, 1.5});
+  edge.to = world.camera.project({0.3, 0.5, 1.5});
+  edge.length_m = 1.2;
+  scene.scale->rule = edge;
+  EXPECT_NEAR(size_unit(world, scene, scene.objects[0], false).units_per_metre, 0.5, kExact);
+}
+
+TEST(DefaultScene, PutsTheStandingModelOnTheTableInView) {
+  Reconstruction world = table_world();
+  // Look down at the table from a metre away, as one does.
+  for (FrameRecord& frame : world.frames) {
+    if (frame.world_from_cam) {
+      frame.world_from_cam->translation() += Eigen::Vector3d(-0.1, -0.4, 0.3);
+      frame.world_from_cam->rotate(Eigen::AngleAxisd(-0.6, Eigen::Vector3d::UnitX()));
+    }
+  }
+  DefaultSceneOptions options;
+  options.standing_model = "stand.glb";
+  options.hanging_model = "hang.glb";
+  const SceneFile scene = default_scene(world, options);
+  ASSERT_EQ(scene.objects.size(), 1U);
+  EXPECT_EQ(scene.objects[0].model, "stand.glb");
+  EXPECT_EQ(std::get<PlanePlace>(scene.objects[0].place).plane, "1");
+  const PlacedObject placed = place_object(world, scene.objects[0], kBox, kMetres, false);
+  const PlaneOutline outline = plane_outline(world.planes[1]);
+  const Eigen::Vector2d at = placed.anchor.plane_from_anchor.translation().head<2>();
+  EXPECT_TRUE(contains(outline, at));
+  EXPECT_GT(distance_to_edge(outline, at), 0.2);
+  EXPECT_GT(*scene.objects[0].size, 0.1);
+  EXPECT_LT(*scene.objects[0].size, 0.6);
+}
+
+TEST(DefaultScene, TakesAWallWhenThereIsNothingElse) {
+  Reconstruction world = table_world();
+  world.planes.erase(world.planes.begin(), world.planes.begin() + 2);
+  DefaultSceneOptions options;
+  options.hanging_model = "hang.glb";
+  EXPECT_EQ(default_scene(world, options).objects[0].model, "hang.glb");
+  world.planes.clear();
+  EXPECT_THROW(default_scene(world, options), UserError);
+}
+
+}  // namespace
+}  // namespace planecast::engine
