@@ -122,7 +122,7 @@ void CatcherPass::make_penumbra(ShaderLibrary& shaders, const CatcherInput& inpu
   const Program& program = shaders.get("full_screen.vert", "penumbra.frag");
   begin_map(maps.penumbra.id(), side);
   program.use();
-  input.shadow->bind(program, input.scene->light.sun, true);
+  input.shadow->bind(program, input.scene->light.sun);
   program.set("u_factor", factor);
   const glm::mat4 world_from_clip = glm::inverse(projection.clip_from_world);
   program.set("u_plane", glm::transpose(world_from_clip) * frame.equation());
