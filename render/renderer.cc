@@ -1,6 +1,7 @@
 #include "render/renderer.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstdlib>
 #include <optional>
 #include <stdexcept>
@@ -43,6 +44,8 @@ void check_camera(const Camera& camera) {
   }
 }
 
+int power_of_two(int size) { return static_cast<int>(std::bit_floor(static_cast<unsigned>(size))); }
+
 bool casts(const Sun& sun) { return sun.casts_shadow && sun.radiance != glm::vec3(0.0F); }
 
 float shadow_margin_texels(const Sun& sun) { return 3.0F + 2.0F * sun.softness; }
@@ -72,7 +75,7 @@ struct Renderer::Impl {
         context(create_current_context(given)),
         gl(load_functions(*context)),
         shaders(gl, given.shader_dir),
-        shadow_map(gl, std::clamp(given.shadow_map_size, 64, 8192)),
+        shadow_map(gl, power_of_two(std::clamp(given.shadow_map_size, 64, 8192))),
         surfaces(gl),
         models(gl),
         model_passes(gl, shaders, models),

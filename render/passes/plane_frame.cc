@@ -94,6 +94,7 @@ ImageF distance_to_edge(const PlanePatch& patch, const PlaneFrame& frame, const 
   };
   ImageF distance(cells(size.x), cells(size.y), 1);
   const std::vector<Edge> edges = all_edges(patch, frame);
+  std::size_t next = 0;
   for (int row = 0; row < distance.height; ++row) {
     for (int column = 0; column < distance.width; ++column) {
       const glm::vec2 share(
@@ -107,8 +108,7 @@ ImageF distance_to_edge(const PlanePatch& patch, const PlaneFrame& frame, const 
         inside ^= crosses_ray(edge, p);
       }
       const float away = std::sqrt(nearest2);
-      distance.pixels[static_cast<std::size_t>(row * distance.width + column)] =
-          inside ? away : -away;
+      distance.pixels[next++] = inside ? away : -away;
     }
   }
   return distance;
