@@ -28,8 +28,8 @@ class Console {
   bool show_progress_;
 };
 
-/// Progress of one long step on stderr: on a terminal a bar with frames per second and the time left,
-/// otherwise a line every 10 %.
+/// Progress of one long step on stderr: on a terminal a bar with frames per second and the time
+/// left, otherwise a line every 10 %.
 class ProgressBar {
  public:
   ProgressBar(const Console& console, std::string label);

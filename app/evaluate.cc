@@ -48,7 +48,8 @@ engine::TrajectoryOptions EvaluateCommand::alignment(bool metric) const {
 template <typename Result>
 int EvaluateCommand::print(const std::optional<Result>& result) const {
   if (!result) {
-    throw engine::UserError(groundtruth + ": fewer than 3 poses of the estimate have a counterpart in time");
+    throw engine::UserError(groundtruth +
+                            ": fewer than 3 poses of the estimate have a counterpart in time");
   }
   const Console console = common.console();
   std::string table = engine::format_table(*result);
@@ -84,7 +85,8 @@ int EvaluateCommand::planes() const {
   engine::PlaneEvaluationOptions options;
   options.trajectory = alignment(map.metric);
   if (truth.sequence->has_labels()) options.seen_labels = engine::labels_in_view(*truth.sequence);
-  return print(engine::evaluate_planes(map, truth.planes, truth.poses, truth.sequence->camera(), options));
+  return print(
+      engine::evaluate_planes(map, truth.planes, truth.poses, truth.sequence->camera(), options));
 }
 
 int EvaluateCommand::overlay() const {
@@ -93,11 +95,13 @@ int EvaluateCommand::overlay() const {
   engine::OverlayOptions options;
   options.planes.trajectory = alignment(map.metric);
   options.causal = causal;
-  return print(engine::evaluate_overlay(map, truth.planes, truth.poses, truth.sequence->camera(), options));
+  return print(
+      engine::evaluate_overlay(map, truth.planes, truth.poses, truth.sequence->camera(), options));
 }
 
 void add_shared_options(CLI::App& command, EvaluateCommand& options) {
-  command.add_option("--align", options.align, "se3 or sim3 (default: sim3, or se3 for metric maps)")
+  command
+      .add_option("--align", options.align, "se3 or sim3 (default: sim3, or se3 for metric maps)")
       ->check(CLI::IsMember({"se3", "sim3"}));
   command.add_option("--json", options.json, "Write the figures to this file too");
   add_common_options(command, options.common);
@@ -110,19 +114,26 @@ void add_evaluate(CLI::App& app, Action& action) {
   command->require_subcommand(1);
   auto options = std::make_shared<EvaluateCommand>();
 
-  CLI::App* trajectory = command->add_subcommand("trajectory", "Absolute and relative trajectory error");
+  CLI::App* trajectory =
+      command->add_subcommand("trajectory", "Absolute and relative trajectory error");
   trajectory->add_option("--estimate", options->estimate, "Trajectory, TUM format")->required();
-  trajectory->add_option("--groundtruth", options->groundtruth, "Trajectory, TUM format")->required();
+  trajectory->add_option("--groundtruth", options->groundtruth, "Trajectory, TUM format")
+      ->required();
   add_shared_options(*trajectory, *options);
-  trajectory->callback([options, &action] { action = [options] { return options->trajectory(); }; });
+  trajectory->callback(
+      [options, &action] { action = [options] { return options->trajectory(); }; });
 
-  const auto add_map_command = [&](const char* name, const char* what, int (EvaluateCommand::*run)() const) {
+  const auto add_map_command = [&](const char* name, const char* what,
+                                   int (EvaluateCommand::*run)() const) {
     CLI::App* sub = command->add_subcommand(name, what);
-    sub->add_option("--reconstruction", options->reconstruction, "Reconstruction folder")->required();
+    sub->add_option("--reconstruction", options->reconstruction, "Reconstruction folder")
+        ->required();
     sub->add_option("--groundtruth", options->groundtruth,
-                    "Synthetic sequence with groundtruth.txt and planes.json")->required();
+                    "Synthetic sequence with groundtruth.txt and planes.json")
+        ->required();
     add_shared_options(*sub, *options);
-    sub->callback([options, run, &action] { action = [options, run] { return (*options.*run)(); }; });
+    sub->callback(
+        [options, run, &action] { action = [options, run] { return (*options.*run)(); }; });
     return sub;
   };
   add_map_command("planes", "Planes found, missed and wrong", &EvaluateCommand::planes);

@@ -41,7 +41,8 @@ struct ModelCommand {
     std::snprintf(text, sizeof(text), "size %.4g x %.4g x %.4g m, base at y = %.4g m",
                   static_cast<double>(bounds.max.x - bounds.min.x),
                   static_cast<double>(bounds.max.y - bounds.min.y),
-                  static_cast<double>(bounds.max.z - bounds.min.z), static_cast<double>(bounds.min.y));
+                  static_cast<double>(bounds.max.z - bounds.min.z),
+                  static_cast<double>(bounds.min.y));
     console.info(text);
     const std::vector<std::string> names = render::animation_names(model);
     for (std::size_t i = 0; i < names.size(); ++i) {
@@ -68,9 +69,11 @@ void add_model(CLI::App& app, Action& action) {
   command->add_option("file", options->file, "glTF or GLB file")->required();
   command->add_option("-o,--output", options->output, "PNG to write");
   command->add_option("--views", options->turntable.views, "Views around the model")
-      ->check(CLI::Range(1, 64))->capture_default_str();
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
   command->add_option("--view-size", options->turntable.view_size_px, "Side of a view in pixels")
-      ->check(CLI::Range(32, 2048))->capture_default_str();
+      ->check(CLI::Range(32, 2048))
+      ->capture_default_str();
   command->add_option("--animation", options->animation, "Name of an animation to pose it by");
   command->add_option("--time", options->turntable.time_s, "Seconds into the animation")
       ->capture_default_str();

@@ -13,7 +13,8 @@ void parse_frames(const std::string& text, engine::SequenceOptions& options) {
   int end = -1;
   char rest = 0;
   const bool both = std::sscanf(text.c_str(), "%d:%d%c", &first, &end, &rest) == 2;
-  const bool from = !both && std::sscanf(text.c_str(), "%d:%c", &first, &rest) == 1 && text.back() == ':';
+  const bool from =
+      !both && std::sscanf(text.c_str(), "%d:%c", &first, &rest) == 1 && text.back() == ':';
   const bool to = !both && !from && std::sscanf(text.c_str(), ":%d%c", &end, &rest) == 1;
   if (to) first = 0;
   if ((!both && !from && !to) || first < 0 || (!from && end <= first)) {
@@ -28,8 +29,8 @@ cv::Size parse_size(const std::string& text) {
   int width = 0;
   int height = 0;
   char rest = 0;
-  if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 16 || height < 16 ||
-      width > kMost || height > kMost) {
+  if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 16 ||
+      height < 16 || width > kMost || height > kMost) {
     throw engine::UserError("--size " + text + ": expected WxH in pixels, as 640x480");
   }
   return {width, height};
@@ -48,8 +49,9 @@ Eigen::Vector3d parse_direction(const std::string& text) {
 }  // namespace
 
 Console CommonOptions::console() const {
-  const Verbosity verbosity =
-      quiet ? Verbosity::kQuiet : verbose ? Verbosity::kVerbose : Verbosity::kNormal;
+  const Verbosity verbosity = quiet     ? Verbosity::kQuiet
+                              : verbose ? Verbosity::kVerbose
+                                        : Verbosity::kNormal;
   return Console(verbosity, !no_progress);
 }
 
@@ -86,12 +88,14 @@ void add_tracking_options(CLI::App& command, TrackingOptions& options) {
   command.add_option("--mode", options.mode, "mono, rgbd or auto")
       ->check(CLI::IsMember({"mono", "rgbd", "auto"}))
       ->capture_default_str();
-  command.add_option("--segmentation", options.segmentation, "Plane masks: auto, masks, depth or none")
+  command
+      .add_option("--segmentation", options.segmentation, "Plane masks: auto, masks, depth or none")
       ->check(CLI::IsMember({"auto", "masks", "depth", "none"}))
       ->capture_default_str();
   command.add_flag("--causal", options.causal,
                    "Each frame as it was known at its time (default: two passes)");
-  command.add_option("--up", options.up, "World's up direction x,y,z (first camera: x right, y down)");
+  command.add_option("--up", options.up,
+                     "World's up direction x,y,z (first camera: x right, y down)");
   command.add_option("--plane-merge", options.plane_merge, "default or paper")
       ->check(CLI::IsMember({"default", "paper"}))
       ->capture_default_str();
@@ -128,9 +132,10 @@ TrackingReport report_tracking(const engine::Reconstruction& reconstruction, boo
   }
   report.poor = 2 * report.posed < report.frames;
   char text[160];
-  std::snprintf(text, sizeof(text), "%d of %d frames have a pose, %zu keyframes, %zu planes, %zu points",
-                report.posed, report.frames, reconstruction.keyframes.size(),
-                reconstruction.planes.size(), reconstruction.points.size());
+  std::snprintf(text, sizeof(text),
+                "%d of %d frames have a pose, %zu keyframes, %zu planes, %zu points", report.posed,
+                report.frames, reconstruction.keyframes.size(), reconstruction.planes.size(),
+                reconstruction.points.size());
   report.line = text;
   return report;
 }

@@ -44,7 +44,8 @@ struct TrackingOptions {
   std::string plane_merge = "default";
   bool causal = false;
 
-  engine::TrackSequenceOptions resolve(const CommonOptions& common, const InputOptions& input) const;
+  engine::TrackSequenceOptions resolve(const CommonOptions& common,
+                                       const InputOptions& input) const;
 };
 void add_tracking_options(CLI::App& command, TrackingOptions& options);
 

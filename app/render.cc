@@ -28,9 +28,8 @@ struct RenderCommand {
                               std::to_string(map.camera.height));
     }
     const auto scene = read_scene(rendering, *sequence);
-    const engine::RenderSequenceResult result =
-        render_with_progress(*sequence, map, scene, resolve(rendering, common, input, causal), output,
-                             console);
+    const engine::RenderSequenceResult result = render_with_progress(
+        *sequence, map, scene, resolve(rendering, common, input, causal), output, console);
     report_rendering(result, output, console);
     return result.unreadable.empty() ? kDone : kPoorResult;
   }
@@ -42,7 +41,8 @@ void add_render(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("render", "Rendering alone, from a reconstruction");
   auto options = std::make_shared<RenderCommand>();
   add_input_options(*command, options->input);
-  command->add_option("--reconstruction", options->reconstruction, "Reconstruction folder")->required();
+  command->add_option("--reconstruction", options->reconstruction, "Reconstruction folder")
+      ->required();
   command->add_option("-o,--output", options->output, "Folder to write")->required();
   add_rendering_options(*command, options->rendering);
   command->add_flag("--causal", options->causal, "Poses as they were known at their frame");

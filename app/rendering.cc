@@ -24,8 +24,9 @@ std::optional<engine::SceneFile> read_scene(const RenderingOptions& options,
   return scene;
 }
 
-engine::RenderSequenceOptions resolve(const RenderingOptions& rendering, const CommonOptions& common,
-                                      const InputOptions& input, bool causal) {
+engine::RenderSequenceOptions resolve(const RenderingOptions& rendering,
+                                      const CommonOptions& common, const InputOptions& input,
+                                      bool causal) {
   engine::RenderSequenceOptions options;
   options.causal = causal;
   options.video = !rendering.no_video;
@@ -51,11 +52,12 @@ engine::RenderSequenceResult render_with_progress(engine::Sequence& sequence,
                                  [&bar](int done, int total) { bar.update(done, total); });
 }
 
-void report_rendering(const engine::RenderSequenceResult& result, const std::filesystem::path& folder,
-                      const Console& console) {
+void report_rendering(const engine::RenderSequenceResult& result,
+                      const std::filesystem::path& folder, const Console& console) {
   for (const std::string& warning : result.warnings) console.warning(warning);
   for (const int frame : result.unreadable) {
-    console.warning("frame " + std::to_string(frame) + " could not be read; the picture before it is repeated");
+    console.warning("frame " + std::to_string(frame) +
+                    " could not be read; the picture before it is repeated");
   }
   for (const auto& [step, ms] : result.mean_ms) {
     char text[64];

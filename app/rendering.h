@@ -31,11 +31,12 @@ engine::RenderSequenceResult render_with_progress(engine::Sequence& sequence,
                                                   const std::filesystem::path& folder,
                                                   const Console& console);
 
-engine::RenderSequenceOptions resolve(const RenderingOptions& rendering, const CommonOptions& common,
-                                      const InputOptions& input, bool causal);
+engine::RenderSequenceOptions resolve(const RenderingOptions& rendering,
+                                      const CommonOptions& common, const InputOptions& input,
+                                      bool causal);
 
 /// Prints where the result is and how it went.
-void report_rendering(const engine::RenderSequenceResult& result, const std::filesystem::path& folder,
-                      const Console& console);
+void report_rendering(const engine::RenderSequenceResult& result,
+                      const std::filesystem::path& folder, const Console& console);
 
 }  // namespace planecast::app

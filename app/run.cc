@@ -29,9 +29,11 @@ struct RunCommand {
 };
 
 /// Tracks, or, to resume, takes what an earlier run has completed.
-engine::Reconstruction RunCommand::reconstruct(engine::Sequence& sequence, const Console& console) const {
+engine::Reconstruction RunCommand::reconstruct(engine::Sequence& sequence,
+                                               const Console& console) const {
   std::error_code ignored;
-  if (rendering.resume && std::filesystem::exists(std::filesystem::path(output) / "map.bin", ignored)) {
+  if (rendering.resume &&
+      std::filesystem::exists(std::filesystem::path(output) / "map.bin", ignored)) {
     console.info("resuming with the reconstruction in " + output);
     return engine::read_reconstruction(output);
   }
@@ -76,7 +78,8 @@ int RunCommand::run() const {
     // Where tracking failed the content has no place: that is a poor result, not a bad scene.
     if (!tracked.poor) throw;
     console.warning(error.what());
-    result = render_with_progress(*sequence, reconstruction, engine::SceneFile{}, options, output, console);
+    result = render_with_progress(*sequence, reconstruction, engine::SceneFile{}, options, output,
+                                  console);
   }
   write_report(reconstruction, result, *sequence);
   report_rendering(result, output, console);

@@ -35,7 +35,8 @@ struct SegmentCommand {
     const auto segmenter = make_segmenter(*sequence, segmentation);
     const std::filesystem::path folder(output);
     engine::make_folder(folder / "mask");
-    std::string list = "# plane instance masks by " + segmenter->name() + "\n# timestamp filename\n";
+    std::string list =
+        "# plane instance masks by " + segmenter->name() + "\n# timestamp filename\n";
     {
       ProgressBar bar(console, "segmenting");
       for (int index = sequence->first_frame(); index < sequence->end_frame(); ++index) {
@@ -44,7 +45,8 @@ struct SegmentCommand {
         std::snprintf(name, sizeof(name), "mask/%06d.png", index);
         write_mask(*segmenter, frame, folder / name);
         list += engine::format_timestamp(frame.timestamp) + " " + name + "\n";
-        bar.update(index + 1 - sequence->first_frame(), sequence->end_frame() - sequence->first_frame());
+        bar.update(index + 1 - sequence->first_frame(),
+                   sequence->end_frame() - sequence->first_frame());
       }
     }
     engine::write_file(folder / "mask.txt", list);

@@ -27,7 +27,8 @@ struct SynthCommand {
     synth.effects = !no_effects;
     {
       ProgressBar bar(console, "making");
-      engine::write_synthetic(synth, output, [&bar](int done, int total) { bar.update(done, total); });
+      engine::write_synthetic(synth, output,
+                              [&bar](int done, int total) { bar.update(done, total); });
     }
     console.result(output);
     return kDone;
@@ -37,18 +38,25 @@ struct SynthCommand {
 }  // namespace
 
 void add_synth(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("synth", "Make a sequence with exact poses, depth and planes");
+  CLI::App* command =
+      app.add_subcommand("synth", "Make a sequence with exact poses, depth and planes");
   auto options = std::make_shared<SynthCommand>();
   command->add_option("name", options->synth.name, "Scene");
   command->add_option("-o,--output", options->output, "Folder to write");
   command->add_flag("--list", options->list, "Print the scenes' names");
-  command->add_option("--width", options->synth.width, "Pixels")->check(CLI::Range(32, 4096))->capture_default_str();
-  command->add_option("--height", options->synth.height, "Pixels")->check(CLI::Range(32, 4096))->capture_default_str();
+  command->add_option("--width", options->synth.width, "Pixels")
+      ->check(CLI::Range(32, 4096))
+      ->capture_default_str();
+  command->add_option("--height", options->synth.height, "Pixels")
+      ->check(CLI::Range(32, 4096))
+      ->capture_default_str();
   command->add_option("--count", options->synth.frames, "Frames (default: the scene's own number)")
       ->check(CLI::Range(1, 100000));
   command->add_option("--fps", options->synth.fps, "Frames per second")
-      ->check(CLI::Range(1.0, 1000.0))->capture_default_str();
-  command->add_flag("--no-effects", options->no_effects, "No noise, blur, exposure drift or depth holes");
+      ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
+  command->add_flag("--no-effects", options->no_effects,
+                    "No noise, blur, exposure drift or depth holes");
   add_common_options(*command, options->common);
   command->callback([options, &action] { action = [options] { return options->run(); }; });
 }

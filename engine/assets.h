@@ -5,8 +5,9 @@
 
 namespace planecast::engine {
 
-/// Folder that holds models/, shaders/ and weights: PLANECAST_ASSETS from the environment, else beside
-/// the executable (../assets, ../share/planecast/assets), else the source tree it was built from, else
+/// Folder that holds models/, shaders/ and weights: PLANECAST_ASSETS from the environment, else
+/// beside the executable (../assets, ../share/planecast/assets), else the source tree it was built
+/// from, else
 /// ./assets. Throws UserError when none of them is there.
 std::filesystem::path assets_dir();
 

@@ -6,7 +6,6 @@ uniform float u_shadow_extent_m;
 uniform float u_shadow_depth_m;
 uniform float u_shadow_texel_m;
 uniform float u_shadow_radius_m;
-uniform float u_shadow_enabled;
 
 vec3 shadow_coordinates(vec3 world) {
   vec3 clip = (u_shadow_from_world * vec4(world, 1.0)).xyz;
@@ -27,5 +26,5 @@ float sun_visibility(vec3 world, vec3 normal, float n_dot_l) {
       sum += texture(u_shadow_map, vec3(at.xy + vec2(x, y) * step, at.z));
     }
   }
-  return mix(1.0, sum / 9.0, u_shadow_enabled);
+  return sum / 9.0;
 }

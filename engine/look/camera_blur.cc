@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kReblurSigma = 1.0;
 /// What the measure gives for an antialiased edge without blur: central differences see it blurred.
-/// Computed for a step through a pixel's box filter; it is between 0.56 and 0.70 for any blur and phase.
+/// Computed for a step through a pixel's box filter; it is between 0.56 and 0.70 for any blur and
+/// phase.
 constexpr double kSharpVariance = 0.68;
 
 /// Widths (sigma) of the edges across which the picture rises along x.
@@ -25,9 +26,11 @@ std::vector<double> edge_widths_along_x(const cv::Mat& grey, const cv::Mat& blur
     for (int x = 2; x + 2 < grey.cols; ++x) {
       const float gx = row[x + 1] - row[x - 1];
       const float strength = std::abs(gx);
-      if (strength < options.min_contrast || strength < 2.0F * std::abs(below[x] - above[x])) continue;
+      if (strength < options.min_contrast || strength < 2.0F * std::abs(below[x] - above[x]))
+        continue;
       // Only the crest of the edge, where the model holds.
-      if (strength < std::abs(row[x] - row[x - 2]) || strength <= std::abs(row[x + 2] - row[x])) continue;
+      if (strength < std::abs(row[x] - row[x - 2]) || strength <= std::abs(row[x + 2] - row[x]))
+        continue;
       const double ratio = gx / static_cast<double>(soft[x + 1] - soft[x - 1]);
       if (ratio < 1.02) continue;
       widths.push_back(kReblurSigma / std::sqrt(ratio * ratio - 1.0));
@@ -38,7 +41,8 @@ std::vector<double> edge_widths_along_x(const cv::Mat& grey, const cv::Mat& blur
 
 double blur_sigma(std::vector<double> widths, const BlurOptions& options) {
   if (static_cast<int>(widths.size()) < options.min_edges) return 0.0;
-  const auto index = static_cast<std::ptrdiff_t>(options.sharp_share * static_cast<double>(widths.size()));
+  const auto index =
+      static_cast<std::ptrdiff_t>(options.sharp_share * static_cast<double>(widths.size()));
   std::nth_element(widths.begin(), widths.begin() + index, widths.end());
   const double sigma = widths[static_cast<std::size_t>(index)];
   return std::min(std::sqrt(std::max(0.0, sigma * sigma - kSharpVariance)), options.max_sigma_px);
@@ -66,7 +70,8 @@ void apply_blur(const CameraBlur& blur, ObjectLayer& layer) {
   const cv::Rect whole(cv::Point(), layer.rgba.size());
   layer.bounds = cv::Rect(layer.bounds.x - radius(sigma_x), layer.bounds.y - radius(sigma_y),
                           layer.bounds.width + 2 * radius(sigma_x),
-                          layer.bounds.height + 2 * radius(sigma_y)) & whole;
+                          layer.bounds.height + 2 * radius(sigma_y)) &
+                 whole;
   cv::Mat part = layer.rgba(layer.bounds);
   // A sigma of 0 would be taken from the kernel's size: give a width-1 kernel any positive one.
   cv::GaussianBlur(part, part, kernel, std::max(sigma_x, 0.1), std::max(sigma_y, 0.1));

@@ -9,7 +9,8 @@
 namespace planecast::engine {
 namespace {
 
-constexpr int kPiecesPerEdge = 12;  ///< so that edges bend with the lens and can be cut at the camera
+constexpr int kPiecesPerEdge =
+    12;  ///< so that edges bend with the lens and can be cut at the camera
 
 cv::Scalar plane_scalar(int id) {
   const Rgb rgb = plane_color(id);
@@ -17,7 +18,8 @@ cv::Scalar plane_scalar(int id) {
 }
 
 void draw_text(const std::string& text, cv::Point at, const cv::Scalar& color, cv::Mat& picture) {
-  cv::putText(picture, text, at, cv::FONT_HERSHEY_SIMPLEX, 0.5, cv::Scalar(0, 0, 0), 3, cv::LINE_AA);
+  cv::putText(picture, text, at, cv::FONT_HERSHEY_SIMPLEX, 0.5, cv::Scalar(0, 0, 0), 3,
+              cv::LINE_AA);
   cv::putText(picture, text, at, cv::FONT_HERSHEY_SIMPLEX, 0.5, color, 1, cv::LINE_AA);
 }
 
@@ -33,7 +35,8 @@ std::optional<cv::Point> project(const slam::Camera& camera, const slam::Pose& c
 }
 
 void draw_ring(const slam::Camera& camera, const slam::Pose& cam_from_world,
-               const std::vector<Eigen::Vector3d>& ring, const cv::Scalar& color, cv::Mat& picture) {
+               const std::vector<Eigen::Vector3d>& ring, const cv::Scalar& color,
+               cv::Mat& picture) {
   for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
     std::optional<cv::Point> last;
     for (int piece = 0; piece <= kPiecesPerEdge; ++piece) {

@@ -10,7 +10,9 @@ namespace planecast::engine {
 namespace {
 
 double linear_luminance(double r, double g, double b) {
-  const auto linear = [](double v) { return srgb_to_linear(std::clamp(static_cast<int>(v + 0.5), 0, 255)); };
+  const auto linear = [](double v) {
+    return srgb_to_linear(std::clamp(static_cast<int>(v + 0.5), 0, 255));
+  };
   return 0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b);
 }
 
@@ -24,12 +26,12 @@ double pixel_luminance(const cv::Mat& image, int y, int x) {
 
 double exposure_gain(const Reconstruction& reconstruction, const cv::Mat& image,
                      const slam::Pose& world_from_cam, const ExposureOptions& options) {
-  constexpr double kDark = 0.01;     // below, quantisation dominates
-  constexpr double kClipped = 0.9;   // above, the sensor saturates
+  constexpr double kDark = 0.01;    // below, quantisation dominates
+  constexpr double kClipped = 0.9;  // above, the sensor saturates
   const slam::Camera& camera = reconstruction.camera;
   const slam::Pose cam_from_world = world_from_cam.inverse();
-  const std::size_t step =
-      std::max<std::size_t>(1, reconstruction.points.size() / static_cast<std::size_t>(options.max_points));
+  const std::size_t step = std::max<std::size_t>(
+      1, reconstruction.points.size() / static_cast<std::size_t>(options.max_points));
   std::vector<double> ratios;
   for (std::size_t i = 0; i < reconstruction.points.size(); i += step) {
     const MapPoint& point = reconstruction.points[i];
@@ -39,7 +41,8 @@ double exposure_gain(const Reconstruction& reconstruction, const cv::Mat& image,
     const int x = static_cast<int>(std::lround(raw.x()));
     const int y = static_cast<int>(std::lround(raw.y()));
     if (x < 0 || y < 0 || x >= image.cols || y >= image.rows) continue;
-    const double in_map = linear_luminance(point.color_rgb.x(), point.color_rgb.y(), point.color_rgb.z());
+    const double in_map =
+        linear_luminance(point.color_rgb.x(), point.color_rgb.y(), point.color_rgb.z());
     const double in_frame = pixel_luminance(image, y, x);
     if (std::min(in_map, in_frame) < kDark || std::max(in_map, in_frame) > kClipped) continue;
     ratios.push_back(in_frame / in_map);

@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kInvisibleGrain = 0.3;  ///< grey levels: lost in the rounding
 
-/// SplitMix64 (Steele, Lea, Flood 2014): well mixed bits of consecutive numbers, the same everywhere.
+/// SplitMix64 (Steele, Lea, Flood 2014): well mixed bits of consecutive numbers, the same
+/// everywhere.
 std::uint64_t mix(std::uint64_t x) {
   x += 0x9E3779B97F4A7C15ULL;
   x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9ULL;
@@ -17,8 +18,8 @@ std::uint64_t mix(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// Nearly Gaussian with unit variance: the sum of four uniform numbers, which needs no library whose
-/// distribution may change.
+/// Nearly Gaussian with unit variance: the sum of four uniform numbers, which needs no library
+/// whose distribution may change.
 float gaussian(std::uint64_t bits) {
   int sum = 0;
   for (int i = 0; i < 4; ++i) sum += static_cast<int>((bits >> (16 * i)) & 0xFFFFU);
@@ -38,7 +39,8 @@ double estimate_grain(const cv::Mat& grey) {
     for (int x = 0; x + 1 < grey.cols; x += 2) {
       // Clipped pixels have no noise and say nothing.
       if (a[x] == 0 || a[x] == 255) continue;
-      ++counts[static_cast<std::size_t>(std::min(std::abs(a[x] - a[x + 1] - b[x] + b[x + 1]), 511))];
+      ++counts[static_cast<std::size_t>(
+          std::min(std::abs(a[x] - a[x + 1] - b[x] + b[x + 1]), 511))];
       ++total;
     }
   }
@@ -72,9 +74,11 @@ void Grain::apply(double sigma, int frame, ObjectLayer& layer) const {
       cv::Vec4b& pixel = pixels[x];
       if (depth[x] <= 0.0F || pixel[3] == 0) continue;
       const double alpha = pixel[3] / 255.0;
-      const int change = static_cast<int>(std::lround(noise[(x + shift_x) % kTile] * sigma * alpha));
+      const int change =
+          static_cast<int>(std::lround(noise[(x + shift_x) % kTile] * sigma * alpha));
       for (int c = 0; c < 3; ++c) {
-        pixel[c] = static_cast<std::uint8_t>(std::clamp(pixel[c] + change, 0, static_cast<int>(pixel[3])));
+        pixel[c] =
+            static_cast<std::uint8_t>(std::clamp(pixel[c] + change, 0, static_cast<int>(pixel[3])));
       }
     }
   }

@@ -8,12 +8,13 @@
 namespace planecast::engine {
 
 /// Standard deviation of a picture's noise in grey levels: the median of the finest diagonal Haar
-/// coefficients over 0.6745 (Donoho and Johnstone 1994), which edges hardly touch. `grey` is CV_8UC1.
+/// coefficients over 0.6745 (Donoho and Johnstone 1994), which edges hardly touch. `grey` is
+/// CV_8UC1.
 double estimate_grain(const cv::Mat& grey);
 
-/// Noise for the object layer: a tile of Gaussian values made once from the seed, laid at a place that
-/// depends on the seed and the frame's number, so that no two frames carry the same grain and every run
-/// does.
+/// Noise for the object layer: a tile of Gaussian values made once from the seed, laid at a place
+/// that depends on the seed and the frame's number, so that no two frames carry the same grain and
+/// every run does.
 class Grain {
  public:
   explicit Grain(std::uint64_t seed);

@@ -22,7 +22,8 @@ Eigen::AlignedBox2d undistorted_bounds(const slam::Camera& camera, double max_gr
   }
   const Eigen::Vector2d size(camera.width, camera.height);
   const Eigen::Vector2d margin = 0.5 * (max_growth - 1.0) * size;
-  return box.intersection(Eigen::AlignedBox2d(Eigen::Vector2d(-margin), Eigen::Vector2d(size + margin)));
+  return box.intersection(
+      Eigen::AlignedBox2d(Eigen::Vector2d(-margin), Eigen::Vector2d(size + margin)));
 }
 
 template <typename Function>
@@ -44,7 +45,8 @@ LensWarp::LensWarp(const slam::Camera& camera, double max_growth)
   if (!needed_) return;
   const Eigen::AlignedBox2d box = undistorted_bounds(camera, max_growth);
   offset_ = -box.min().array().floor().matrix();
-  const Eigen::Vector2d size = (box.max() + offset_).array().ceil().matrix() + Eigen::Vector2d::Ones();
+  const Eigen::Vector2d size =
+      (box.max() + offset_).array().ceil().matrix() + Eigen::Vector2d::Ones();
   layer_camera_.lens = slam::LensModel::kPinhole;
   layer_camera_.distortion.fill(0.0);
   layer_camera_.width = static_cast<int>(size.x());
@@ -54,10 +56,9 @@ LensWarp::LensWarp(const slam::Camera& camera, double max_growth)
   layer_from_raw_ = pixel_map(camera.width, camera.height, [this](const Eigen::Vector2d& raw) {
     return Eigen::Vector2d(camera_.undistort(raw) + offset_);
   });
-  raw_from_layer_ = pixel_map(layer_camera_.width, layer_camera_.height,
-                              [this](const Eigen::Vector2d& pixel) {
-                                return camera_.distort(pixel - offset_);
-                              });
+  raw_from_layer_ =
+      pixel_map(layer_camera_.width, layer_camera_.height,
+                [this](const Eigen::Vector2d& pixel) { return camera_.distort(pixel - offset_); });
 }
 
 cv::Rect LensWarp::raw_bounds(const cv::Rect& layer_bounds) const {
@@ -102,7 +103,8 @@ ObjectLayer LensWarp::to_raw(const ObjectLayer& layer) const {
 cv::Mat LensWarp::depth_to_layer(const cv::Mat& raw_depth) const {
   if (!needed_) return raw_depth;
   cv::Mat depth;
-  cv::remap(raw_depth, depth, raw_from_layer_, cv::noArray(), cv::INTER_NEAREST, cv::BORDER_CONSTANT);
+  cv::remap(raw_depth, depth, raw_from_layer_, cv::noArray(), cv::INTER_NEAREST,
+            cv::BORDER_CONSTANT);
   return depth;
 }
 

@@ -7,9 +7,9 @@
 
 namespace planecast::engine {
 
-/// Draws the object layer through the lens instead of undistorting the video: the layer is rendered by
-/// an ideal pinhole that covers the undistorted picture, then resampled to raw pixels. The picture
-/// itself is never resampled. Without distortion nothing is done and nothing is allocated.
+/// Draws the object layer through the lens instead of undistorting the video: the layer is rendered
+/// by an ideal pinhole that covers the undistorted picture, then resampled to raw pixels. The
+/// picture itself is never resampled. Without distortion nothing is done and nothing is allocated.
 class LensWarp {
  public:
   /// Lenses that see farther than the layer may grow (`max_growth` times each side) lose the rest.

@@ -83,16 +83,18 @@ void LightEstimator::add(const cv::Mat& image, const slam::Camera& camera,
   right_sum_ += rotation.col(0);
 }
 
+double LightEstimator::quantile(double share) const {
+  std::vector<double> values;
+  for (const Sample& sample : samples_) values.push_back(luminance(sample.radiance));
+  const auto nth =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), nth, values.end());
+  return *nth;
+}
+
 Eigen::Vector3d LightEstimator::robust_mean() const {
-  std::vector<double> brightness;
-  for (const Sample& sample : samples_) brightness.push_back(luminance(sample.radiance));
-  const auto quantile = [&brightness](double q) {
-    const auto nth = brightness.begin() +
-                     static_cast<std::ptrdiff_t>(q * static_cast<double>(brightness.size() - 1));
-    std::nth_element(brightness.begin(), nth, brightness.end());
-    return *nth;
-  };
-  // Lamps and windows in view shine; black screens and shadows reflect nothing: neither is a surface.
+  // Lamps and windows in view shine; black screens and shadows reflect nothing: neither is a
+  // surface.
   const double low = quantile(0.05);
   const double high = quantile(0.95);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -104,6 +106,12 @@ Eigen::Vector3d LightEstimator::robust_mean() const {
     ++count;
   }
   return sum / std::max(count, 1);
+}
+
+double LightEstimator::brightness() const {
+  const double by_mean = luminance(robust_mean()) / options_.mean_albedo;
+  const double by_bright = quantile(0.9) / options_.bright_albedo;
+  return std::clamp(0.5 * (by_mean + by_bright), options_.min_brightness, options_.max_brightness);
 }
 
 /// Ridge regression of relative brightness on the horizontal direction.
@@ -132,22 +140,20 @@ SceneLight LightEstimator::estimate(const Eigen::Vector3d& up) const {
   light.sun_direction = up;
   if (samples_.empty()) return light;
   const Eigen::Vector3d seen = robust_mean();
-  const double brightness = std::clamp(luminance(seen) / options_.mean_albedo,
-                                       options_.min_brightness, options_.max_brightness);
   const Eigen::Vector3d tint = seen / std::max(luminance(seen), 1e-4);
-  const Eigen::Vector3d color = options_.neutral_share * Eigen::Vector3d::Ones() +
-                                (1.0 - options_.neutral_share) * tint;
+  const Eigen::Vector3d color =
+      options_.neutral_share * Eigen::Vector3d::Ones() + (1.0 - options_.neutral_share) * tint;
   const Eigen::Vector3d side = side_gradient(up);
   light.gradient = options_.up_gradient * up + 0.5 * side;
-  // Seen by the viewer, light from the upper left and a little from behind shows shapes best; what the
-  // pictures say outweighs it as soon as they say anything.
+  // Seen by the viewer, light from the upper left and a little from behind shows shapes best; what
+  // the pictures say outweighs it as soon as they say anything.
   const Eigen::Vector3d custom = -0.10 * right_sum_.normalized() - 0.06 * view_sum_.normalized();
   const Eigen::Vector3d lateral = flattened(custom, up) + side;
-  light.sun_direction = (up + 0.6 * std::min(1.0, 4.0 * lateral.norm()) *
-                                  lateral.normalized()).normalized();
+  light.sun_direction =
+      (up + 0.6 * std::min(1.0, 4.0 * lateral.norm()) * lateral.normalized()).normalized();
   const double facing = light.sun_direction.dot(up);
-  light.sun_radiance = color * brightness * options_.sun_share / std::max(facing, 0.3);
-  light.mean = color * brightness * (1.0 - options_.sun_share) /
+  light.sun_radiance = color * brightness() * options_.sun_share / std::max(facing, 0.3);
+  light.mean = color * brightness() * (1.0 - options_.sun_share) /
                (1.0 + kGradientOnFacing * options_.up_gradient);
   return light;
 }

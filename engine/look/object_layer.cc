@@ -27,7 +27,8 @@ ObjectLayer view_layer(render::Layer& layer) {
   if (layer.rgba.empty()) return view;
   view.rgba = cv::Mat(layer.rgba.height, layer.rgba.width, CV_8UC4, layer.rgba.pixels.data());
   if (!layer.depth.empty()) {
-    view.depth = cv::Mat(layer.depth.height, layer.depth.width, CV_32FC1, layer.depth.pixels.data());
+    view.depth =
+        cv::Mat(layer.depth.height, layer.depth.width, CV_32FC1, layer.depth.pixels.data());
   }
   const cv::Rect bounds(layer.bounds.x, layer.bounds.y, layer.bounds.width, layer.bounds.height);
   view.bounds = bounds & cv::Rect(cv::Point(), view.rgba.size());

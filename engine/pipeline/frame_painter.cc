@@ -14,8 +14,8 @@
 namespace planecast::engine {
 namespace {
 
-constexpr double kNearShare = 0.02;   ///< near plane, of the median depth
-constexpr double kFarShare = 100.0;   ///< far plane, of the median depth
+constexpr double kNearShare = 0.02;      ///< near plane, of the median depth
+constexpr double kFarShare = 100.0;      ///< far plane, of the median depth
 constexpr float kShadowSoftness = 2.5F;  ///< shadow-map texels: rooms have no hard shadows
 
 class StopWatch {
@@ -91,7 +91,8 @@ void FramePainter::set_light(double gain) {
 }
 
 void FramePainter::set_depth(const cv::Mat& raw_depth) {
-  const bool wanted = options_.occlusion == Occlusion::kDepth || options_.occlusion == Occlusion::kBoth;
+  const bool wanted =
+      options_.occlusion == Occlusion::kDepth || options_.occlusion == Occlusion::kBoth;
   scene_.occluder_depth = nullptr;
   if (!wanted || raw_depth.empty()) return;
   // Single wild pixels of the sensor would pepper the object.
@@ -100,8 +101,9 @@ void FramePainter::set_depth(const cv::Mat& raw_depth) {
   const cv::Mat depth = warp_.depth_to_layer(filtered);
   depth_ = render::ImageF(depth.cols, depth.rows, 1);
   for (int y = 0; y < depth.rows; ++y) {
-    std::memcpy(depth_.pixels.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(depth.cols),
-                depth.ptr<float>(y), static_cast<std::size_t>(depth.cols) * sizeof(float));
+    std::memcpy(
+        depth_.pixels.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(depth.cols),
+        depth.ptr<float>(y), static_cast<std::size_t>(depth.cols) * sizeof(float));
   }
   scene_.occluder_depth = &depth_;
 }
@@ -110,7 +112,8 @@ bool FramePainter::paint(const slam::FrameInput& frame, const slam::Pose& world_
                          double time_s, cv::Mat& picture) {
   StopWatch watch;
   const cv::Mat grey = to_grey(frame.image);
-  set_light(options_.follow_exposure ? exposure_gain(reconstruction_, frame.image, world_from_cam) : 1.0);
+  set_light(options_.follow_exposure ? exposure_gain(reconstruction_, frame.image, world_from_cam)
+                                     : 1.0);
   set_depth(frame.depth);
   for (render::Instance& instance : scene_.instances) {
     instance.animation_time_s = static_cast<float>(time_s);

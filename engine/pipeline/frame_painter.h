@@ -33,14 +33,14 @@ struct PaintTimes {
   double composite_ms = 0.0;  ///< blur, grain, lens and compositing
 };
 
-/// Draws the content into pictures: layer by the renderer, then everything that makes it belong to the
-/// picture. Each picture depends on its own frame alone, so that any of them can be made again. The
-/// renderer inside belongs to the thread that made the painter.
+/// Draws the content into pictures: layer by the renderer, then everything that makes it belong to
+/// the picture. Each picture depends on its own frame alone, so that any of them can be made again.
+/// The renderer inside belongs to the thread that made the painter.
 class FramePainter {
  public:
   /// Throws std::runtime_error when no rendering context can be made.
-  FramePainter(const Reconstruction& reconstruction, const Content& content, const SceneLight& light,
-               const PainterOptions& options);
+  FramePainter(const Reconstruction& reconstruction, const Content& content,
+               const SceneLight& light, const PainterOptions& options);
 
   /// Returns whether anything was drawn. `frame.image` stays as it is; `picture` is CV_8UC3 BGR and
   /// holds the frame's picture. `time_s` runs the animations.

@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <exception>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <sstream>
-#include <thread>
 
 #include "engine/assets.h"
 #include "engine/look/debug_overlay.h"
@@ -15,126 +12,13 @@
 #include "engine/output/png.h"
 #include "engine/output/video.h"
 #include "engine/pipeline/frame_painter.h"
-#include "engine/pipeline/ordered_queue.h"
+#include "engine/pipeline/picture_flow.h"
 #include "engine/pipeline/scene_light.h"
 #include "engine/scene/content.h"
 #include "engine/user_error.h"
 
 namespace planecast::engine {
 namespace {
-
-constexpr std::size_t kQueueLength = 4;  ///< frames: enough to hide jitter, little memory
-
-/// A frame that was read, or could not be.
-struct Job {
-  int index = 0;
-  slam::FrameInput frame;
-  std::string error;
-};
-
-struct Picture {
-  int index = 0;
-  cv::Mat bgr;
-};
-
-Job read_job(Sequence& sequence, int index) {
-  Job job;
-  job.index = index;
-  try {
-    job.frame = sequence.read(index);
-  } catch (const UserError& error) {
-    job.error = error.what();
-  }
-  return job;
-}
-
-/// Frames begin..end-1 in order, read ahead on a thread of its own when `threaded`.
-class Reader {
- public:
-  Reader(Sequence& sequence, int begin, int end, bool threaded)
-      : sequence_(sequence), next_(begin), end_(end), queue_(kQueueLength) {
-    if (threaded) thread_ = std::thread([this] { read_all(); });
-  }
-  ~Reader() {
-    queue_.close();
-    if (thread_.joinable()) thread_.join();
-  }
-  Reader(const Reader&) = delete;
-  Reader& operator=(const Reader&) = delete;
-
-  std::optional<Job> next() {
-    if (!thread_.joinable()) {
-      if (next_ >= end_) return std::nullopt;
-      return read_job(sequence_, next_++);
-    }
-    std::optional<Job> job = queue_.pop();
-    if (!job && failure_) std::rethrow_exception(failure_);
-    return job;
-  }
-
- private:
-  void read_all() {
-    try {
-      for (; next_ < end_; ++next_) {
-        if (!queue_.push(read_job(sequence_, next_))) break;
-      }
-    } catch (...) {
-      failure_ = std::current_exception();
-    }
-    queue_.close();
-  }
-
-  Sequence& sequence_;
-  int next_;
-  int end_;
-  OrderedQueue<Job> queue_;
-  std::exception_ptr failure_;  ///< written before close(), read after the last pop()
-  std::thread thread_;
-};
-
-/// Takes pictures in order; writes them on a thread of its own when `threaded`.
-class Writer {
- public:
-  Writer(std::function<void(const Picture&)> write, bool threaded)
-      : write_(std::move(write)), queue_(kQueueLength) {
-    if (threaded) thread_ = std::thread([this] { write_all(); });
-  }
-  ~Writer() {
-    queue_.close();
-    if (thread_.joinable()) thread_.join();
-  }
-  Writer(const Writer&) = delete;
-  Writer& operator=(const Writer&) = delete;
-
-  void put(Picture picture) {
-    if (!thread_.joinable()) {
-      write_(picture);
-    } else if (!queue_.push(std::move(picture))) {
-      finish();
-    }
-  }
-  /// Waits until all is written; throws what went wrong there.
-  void finish() {
-    queue_.close();
-    if (thread_.joinable()) thread_.join();
-    if (failure_) std::rethrow_exception(failure_);
-  }
-
- private:
-  void write_all() {
-    try {
-      while (const std::optional<Picture> picture = queue_.pop()) write_(*picture);
-    } catch (...) {
-      failure_ = std::current_exception();
-      queue_.close();
-    }
-  }
-
-  std::function<void(const Picture&)> write_;
-  OrderedQueue<Picture> queue_;
-  std::exception_ptr failure_;
-  std::thread thread_;
-};
 
 class SequenceRenderer {
  public:
@@ -168,7 +52,7 @@ class SequenceRenderer {
   std::string content_key() const;
   int resume_frame() const;
   void write(const Picture& picture);
-  cv::Mat picture_of(const Job& job);
+  cv::Mat picture_of(const ReadFrame& job);
   void keep_still(int index, const cv::Mat& picture);
 
   Sequence& sequence_;
@@ -195,14 +79,16 @@ void SequenceRenderer::open_outputs() {
     video_options.content_key = content_key();
     result_.video = folder_ / "augmented.mp4";
     video_ = std::make_unique<VideoWriter>(result_.video, reconstruction_.camera.width,
-                                           reconstruction_.camera.height, sequence_.fps(), video_options);
+                                           reconstruction_.camera.height, sequence_.fps(),
+                                           video_options);
   }
 }
 
 /// Everything but the pictures' own content that a frame depends on.
 std::string SequenceRenderer::content_key() const {
   std::string key = scene_.name.empty() ? "default scene" : read_file(scene_.name);
-  key += "\nframes " + std::to_string(sequence_.first_frame()) + ":" + std::to_string(sequence_.end_frame());
+  key += "\nframes " + std::to_string(sequence_.first_frame()) + ":" +
+         std::to_string(sequence_.end_frame());
   key += "\nseed " + std::to_string(options_.seed) + (options_.causal ? " causal" : "") +
          (options_.debug_overlay ? " overlay" : "");
   for (const ContentItem& item : content_.items) {
@@ -229,7 +115,7 @@ void SequenceRenderer::write(const Picture& picture) {
   write_png(picture.bgr, folder_ / "frames" / name);
 }
 
-cv::Mat SequenceRenderer::picture_of(const Job& job) {
+cv::Mat SequenceRenderer::picture_of(const ReadFrame& job) {
   if (!job.error.empty()) {
     result_.unreadable.push_back(job.index);
     if (!last_picture_.empty()) return last_picture_.clone();
@@ -269,9 +155,9 @@ RenderSequenceResult SequenceRenderer::run(const Progress& progress) {
   std::string fatal;
   {
     const bool threaded = options_.threads > 1;
-    Reader reader(sequence_, begin, end, threaded);
-    Writer writer([this](const Picture& picture) { write(picture); }, threaded);
-    while (const std::optional<Job> job = reader.next()) {
+    FrameReader reader(sequence_, begin, end, threaded);
+    PictureWriter writer([this](const Picture& picture) { write(picture); }, threaded);
+    while (const std::optional<ReadFrame> job = reader.next()) {
       if (!job->error.empty() && !options_.skip_unreadable) {
         fatal = job->error;
         break;
@@ -285,7 +171,8 @@ RenderSequenceResult SequenceRenderer::run(const Progress& progress) {
     }
     writer.finish();
   }
-  if (video_) video_->finish();
+  // Even then what came before is completed; a video of nothing cannot be.
+  if (video_ && (result_.frames > 0 || fatal.empty())) video_->finish();
   if (!fatal.empty()) throw UserError(fatal);
   for (auto& [step, ms] : result_.mean_ms) ms /= std::max(result_.frames, 1);
   return std::move(result_);
@@ -295,7 +182,8 @@ RenderSequenceResult SequenceRenderer::run(const Progress& progress) {
 
 RenderSequenceResult render_sequence(Sequence& sequence, const Reconstruction& reconstruction,
                                      const SceneFile& scene, const RenderSequenceOptions& options,
-                                     const std::filesystem::path& folder, const Progress& progress) {
+                                     const std::filesystem::path& folder,
+                                     const Progress& progress) {
   return SequenceRenderer(sequence, reconstruction, scene, options, folder).run(progress);
 }
 

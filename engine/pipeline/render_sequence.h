@@ -15,30 +15,30 @@
 namespace planecast::engine {
 
 struct RenderSequenceOptions {
-  bool causal = false;         ///< poses as they were known at their frame
-  bool video = true;           ///< augmented.mp4
-  bool png = false;            ///< frames/NNNNNN.png
-  bool debug_overlay = false;  ///< plane outlines and the frame's state drawn over the picture
-  bool resume = false;         ///< go on after the last complete video segment of a killed run
+  bool causal = false;           ///< poses as they were known at their frame
+  bool video = true;             ///< augmented.mp4
+  bool png = false;              ///< frames/NNNNNN.png
+  bool debug_overlay = false;    ///< plane outlines and the frame's state drawn over the picture
+  bool resume = false;           ///< go on after the last complete video segment of a killed run
   bool skip_unreadable = false;  ///< repeat the last picture instead of ending
-  int threads = 2;             ///< changes no result
+  int threads = 2;               ///< changes no result
   std::uint64_t seed = 1;
-  int stills = 4;              ///< pictures kept for the report
+  int stills = 4;  ///< pictures kept for the report
 };
 
 struct RenderSequenceResult {
-  int frames = 0;             ///< written by this call
-  int with_content = 0;       ///< of them, those in which something was drawn
+  int frames = 0;        ///< written by this call
+  int with_content = 0;  ///< of them, those in which something was drawn
   std::vector<int> unreadable;
-  std::filesystem::path video;  ///< empty when there is none
+  std::filesystem::path video;                  ///< empty when there is none
   std::vector<std::pair<int, cv::Mat>> stills;  ///< frame number and BGR picture
   std::vector<std::string> warnings;
   std::map<std::string, double> mean_ms;  ///< per frame, by step
 };
 
-/// Draws the scene over every frame of the sequence. Frames without a pose keep their picture. Reading,
-/// drawing and encoding overlap, in order. Throws UserError for scene and input errors; when a frame in
-/// the middle cannot be read, after everything before it was completed.
+/// Draws the scene over every frame of the sequence. Frames without a pose keep their picture.
+/// Reading, drawing and encoding overlap, in order. Throws UserError for scene and input errors;
+/// when a frame in the middle cannot be read, after everything before it was completed.
 RenderSequenceResult render_sequence(Sequence& sequence, const Reconstruction& reconstruction,
                                      const SceneFile& scene, const RenderSequenceOptions& options,
                                      const std::filesystem::path& folder, const Progress& progress);

@@ -17,7 +17,8 @@ namespace {
 constexpr double kFocalShare = 1.6;  ///< focal length over the view's side: about 35 degrees
 constexpr int kColumns = 4;
 
-/// World from camera of a camera (x right, y down, z forward) that looks at `target`, y up in the world.
+/// World from camera of a camera (x right, y down, z forward) that looks at `target`, y up in the
+/// world.
 slam::Pose look_at(const Eigen::Vector3d& position, const Eigen::Vector3d& target) {
   const Eigen::Vector3d forward = (target - position).normalized();
   const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitY()).normalized();
@@ -33,8 +34,8 @@ render::PlanePatch ground(const Eigen::Vector3d& centre, double radius) {
   constexpr int kCorners = 24;
   for (int i = 0; i < kCorners; ++i) {
     const double angle = -2.0 * std::numbers::pi * i / kCorners;
-    patch.outer.push_back(to_glm(Eigen::Vector3d(
-        centre + radius * Eigen::Vector3d(std::cos(angle), 0.0, std::sin(angle)))));
+    patch.outer.push_back(to_glm(
+        Eigen::Vector3d(centre + radius * Eigen::Vector3d(std::cos(angle), 0.0, std::sin(angle)))));
   }
   patch.edge_softness_m = static_cast<float>(0.4 * radius);
   return patch;

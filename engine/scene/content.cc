@@ -24,8 +24,8 @@ int find_animation(const render::Model& model, const SceneObject& object) {
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
   const std::string wanted =
       object.animation_index ? std::to_string(*object.animation_index) : object.animation;
-  throw UserError(object.where + ": model '" + object.model.string() + "' has no animation '" + wanted +
-                  "' (it has: " + (list.empty() ? "none" : list) + ")");
+  throw UserError(object.where + ": model '" + object.model.string() + "' has no animation '" +
+                  wanted + "' (it has: " + (list.empty() ? "none" : list) + ")");
 }
 
 /// Models by file, each read once.

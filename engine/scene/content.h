@@ -15,7 +15,7 @@ namespace planecast::engine {
 struct ContentItem {
   std::shared_ptr<const render::Model> model;
   PlacedObject placed;
-  int animation = -1;        ///< -1: rest pose
+  int animation = -1;         ///< -1: rest pose
   double longest_side = 0.0;  ///< world units
   double footprint = 0.0;     ///< radius of a circle about the contact that holds the model's base
 };
@@ -25,12 +25,12 @@ struct Content {
   std::vector<std::string> warnings;  ///< of the models, each with its file
 };
 
-/// What can be known before tracking: every model is readable and has its animation, every frame that is
-/// named lies in first..end-1. Throws UserError like load_content.
+/// What can be known before tracking: every model is readable and has its animation, every frame
+/// that is named lies in first..end-1. Throws UserError like load_content.
 void check_content(const SceneFile& scene, int first_frame, int end_frame);
 
-/// Loads every model once and places every object. Throws UserError naming the file (and line) for a
-/// model that cannot be read, an animation it has not, and places that are not there.
+/// Loads every model once and places every object. Throws UserError naming the file (and line) for
+/// a model that cannot be read, an animation it has not, and places that are not there.
 Content load_content(const Reconstruction& reconstruction, const SceneFile& scene, bool causal);
 
 }  // namespace planecast::engine

@@ -27,8 +27,8 @@ double class_weight(const PlaneRecord& plane) {
   return plane.plane_class == "ceiling" ? 0.05 : 0.25;
 }
 
-/// Fractions of the picture whose rays vote; the middle counts most, and content stands better a little
-/// below it, where its upper end stays in view.
+/// Fractions of the picture whose rays vote; the middle counts most, and content stands better a
+/// little below it, where its upper end stays in view.
 std::vector<std::pair<Eigen::Vector2d, double>> voting_pixels() {
   std::vector<std::pair<Eigen::Vector2d, double>> pixels;
   for (double y = 0.3; y < 0.86; y += 0.11) {
@@ -47,14 +47,16 @@ std::map<int, Votes> collect_votes(const Reconstruction& reconstruction, int sam
     if (frame.world_from_cam) posed.push_back(&frame);
   }
   std::map<int, Votes> votes;
-  const std::size_t step = std::max<std::size_t>(1, posed.size() / static_cast<std::size_t>(sampled_frames));
+  const std::size_t step =
+      std::max<std::size_t>(1, posed.size() / static_cast<std::size_t>(sampled_frames));
   const slam::Camera& camera = reconstruction.camera;
   const auto pixels = voting_pixels();
   for (std::size_t i = 0; i < posed.size(); i += step) {
     for (const auto& [fraction, weight] : pixels) {
-      const Eigen::Vector2d pixel(fraction.x() * (camera.width - 1), fraction.y() * (camera.height - 1));
-      const std::optional<Hit> hit =
-          hit_test(reconstruction.planes, pixel_ray(camera, *posed[i]->world_from_cam, pixel), {0.0});
+      const Eigen::Vector2d pixel(fraction.x() * (camera.width - 1),
+                                  fraction.y() * (camera.height - 1));
+      const std::optional<Hit> hit = hit_test(
+          reconstruction.planes, pixel_ray(camera, *posed[i]->world_from_cam, pixel), {0.0});
       if (!hit) continue;
       const PlaneRecord& plane = *find_plane(reconstruction.planes, hit->plane_id);
       Votes& mine = votes[hit->plane_id];
@@ -130,8 +132,9 @@ DefaultSceneOptions builtin_models() {
 SceneFile default_scene(const Reconstruction& reconstruction, const DefaultSceneOptions& options) {
   const std::map<int, Votes> votes = collect_votes(reconstruction, options.sampled_frames);
   if (votes.empty()) {
-    throw UserError("no scene given, and the map has no plane in view to put an object on (planes: " +
-                    list_planes(reconstruction.planes) + ")");
+    throw UserError(
+        "no scene given, and the map has no plane in view to put an object on (planes: " +
+        list_planes(reconstruction.planes) + ")");
   }
   const auto& [plane_id, chosen] = *std::ranges::max_element(
       votes, [](const auto& a, const auto& b) { return a.second.weight < b.second.weight; });
@@ -146,7 +149,8 @@ SceneFile default_scene(const Reconstruction& reconstruction, const DefaultScene
 
   SceneObject object;
   object.where = "default scene";
-  object.model = is_vertical(reconstruction, plane) ? options.hanging_model : options.standing_model;
+  object.model =
+      is_vertical(reconstruction, plane) ? options.hanging_model : options.standing_model;
   const Eigen::AlignedBox2d box = bounding_box(outline);
   PlanePlace place;
   place.plane = std::to_string(plane_id);

@@ -37,7 +37,8 @@ std::vector<PlaneRecord> planes_in_view(const Reconstruction& reconstruction,
   for (int i = 0; i < kRays * kRays; ++i) {
     const Eigen::Vector2d pixel((i % kRays + 0.5) * camera.width / kRays,
                                 (i / kRays + 0.5) * camera.height / kRays);
-    const auto hit = hit_test(reconstruction.planes, pixel_ray(camera, world_from_cam, pixel), {0.0});
+    const auto hit =
+        hit_test(reconstruction.planes, pixel_ray(camera, world_from_cam, pixel), {0.0});
     if (hit) ids.insert(hit->plane_id);
   }
   std::vector<PlaneRecord> seen;
@@ -93,7 +94,8 @@ slam::Pose frame_pose(const Reconstruction& reconstruction, int frame, bool caus
   int nearest = -1;
   for (const FrameRecord& other : reconstruction.frames) {
     if (!(causal ? other.causal_world_from_cam : other.world_from_cam)) continue;
-    if (nearest < 0 || std::abs(other.index - frame) < std::abs(nearest - frame)) nearest = other.index;
+    if (nearest < 0 || std::abs(other.index - frame) < std::abs(nearest - frame))
+      nearest = other.index;
   }
   throw UserError(name + " has no camera pose (" + record->state +
                   (record->reason.empty() ? "" : ": " + record->reason) + "); " +
@@ -106,14 +108,15 @@ Hit tap(const Reconstruction& reconstruction, int frame, const Eigen::Vector2d& 
   const slam::Pose world_from_cam = frame_pose(reconstruction, frame, causal, where);
   const slam::Camera& camera = reconstruction.camera;
   if (!camera.contains(raw_pixel)) {
-    throw UserError(where + ": " + describe_pixel(frame, raw_pixel) + " lies outside the picture (" +
-                    std::to_string(camera.width) + "x" + std::to_string(camera.height) + ")");
+    throw UserError(where + ": " + describe_pixel(frame, raw_pixel) +
+                    " lies outside the picture (" + std::to_string(camera.width) + "x" +
+                    std::to_string(camera.height) + ")");
   }
   const Ray ray = pixel_ray(camera, world_from_cam, raw_pixel);
   if (const std::optional<Hit> hit = hit_test(reconstruction.planes, ray)) return *hit;
-  throw UserError(where + ": there is no plane at " + describe_pixel(frame, raw_pixel) +
-                  "; planes in that frame: " +
-                  list_planes(planes_in_view(reconstruction, world_from_cam)));
+  throw UserError(
+      where + ": there is no plane at " + describe_pixel(frame, raw_pixel) +
+      "; planes in that frame: " + list_planes(planes_in_view(reconstruction, world_from_cam)));
 }
 
 }  // namespace planecast::engine

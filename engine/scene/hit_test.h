@@ -21,8 +21,8 @@ struct Hit {
 };
 
 struct HitOptions {
-  /// A ray that meets no polygon may still meet one grown by this share of the hit's depth: estimated
-  /// outlines end at the last landmark, a little before the surface does.
+  /// A ray that meets no polygon may still meet one grown by this share of the hit's depth:
+  /// estimated outlines end at the last landmark, a little before the surface does.
   double dilation = 0.06;
 };
 
@@ -34,8 +34,8 @@ Ray pixel_ray(const slam::Camera& camera, const slam::Pose& world_from_cam,
 std::optional<Hit> hit_test(const std::vector<PlaneRecord>& planes, const Ray& ray,
                             const HitOptions& options = {});
 
-/// Pose of a frame: final, or as known at that frame. Throws UserError "`where`: frame N ..." when the
-/// sequence has no such frame or the frame has no pose.
+/// Pose of a frame: final, or as known at that frame. Throws UserError "`where`: frame N ..." when
+/// the sequence has no such frame or the frame has no pose.
 slam::Pose frame_pose(const Reconstruction& reconstruction, int frame, bool causal,
                       const std::string& where);
 

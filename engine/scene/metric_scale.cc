@@ -33,7 +33,8 @@ std::optional<double> median_depth_in(const Reconstruction& reconstruction,
 /// The frame from which the first object was placed, else the first one with a pose.
 int placing_frame(const Reconstruction& reconstruction, const SceneFile& scene, bool causal,
                   const std::string& where) {
-  if (const auto* place = std::get_if<PixelPlace>(&scene.objects.front().place)) return place->frame;
+  if (const auto* place = std::get_if<PixelPlace>(&scene.objects.front().place))
+    return place->frame;
   for (const FrameRecord& frame : reconstruction.frames) {
     if (causal ? frame.causal_world_from_cam : frame.world_from_cam) return frame.index;
   }
@@ -85,7 +86,8 @@ SizeUnit size_unit(const Reconstruction& reconstruction, const SceneFile& scene,
           return map_length(reconstruction, scene, rule, causal, where) / known_length(rule);
         },
         scene.scale->rule);
-    if (!(unit.units_per_metre > 0.0)) throw UserError(where + ": the known length is zero in the map");
+    if (!(unit.units_per_metre > 0.0))
+      throw UserError(where + ": the known length is zero in the map");
     return unit;
   }
   const auto* place = std::get_if<PixelPlace>(&object.place);

@@ -12,8 +12,8 @@ struct SizeUnit {
 };
 
 /// Unit for one object: metres where the reconstruction or the scene's `scale` has them; else the
-/// median depth of the finished map (causal, for a tap: of what the tapped frame sees). Throws UserError
-/// when the scale's pixels or planes are not there.
+/// median depth of the finished map (causal, for a tap: of what the tapped frame sees). Throws
+/// UserError when the scale's pixels or planes are not there.
 SizeUnit size_unit(const Reconstruction& reconstruction, const SceneFile& scene,
                    const SceneObject& object, bool causal);
 

@@ -76,7 +76,8 @@ render::PlanePatch to_patch(const PlaneOutline& outline, const slam::Pose& world
   const auto lift = [&world_from_plane](const std::vector<Eigen::Vector2d>& ring) {
     std::vector<glm::vec3> corners;
     for (const Eigen::Vector2d& p : ring) {
-      corners.push_back(to_glm(Eigen::Vector3d(world_from_plane * Eigen::Vector3d(p.x(), p.y(), 0.0))));
+      corners.push_back(
+          to_glm(Eigen::Vector3d(world_from_plane * Eigen::Vector3d(p.x(), p.y(), 0.0))));
     }
     return corners;
   };

@@ -25,7 +25,8 @@ struct Spot {
   bool vertical = false;
 };
 
-/// Part of `v` at right angles to the unit vector `normal`, normalised; nothing when they are parallel.
+/// Part of `v` at right angles to the unit vector `normal`, normalised; nothing when they are
+/// parallel.
 std::optional<Eigen::Vector3d> tangent(const Eigen::Vector3d& v, const Eigen::Vector3d& normal) {
   const Eigen::Vector3d flat = v - normal.dot(v) * normal;
   if (flat.norm() < 1e-3 * v.norm() || v.norm() == 0.0) return std::nullopt;
@@ -89,8 +90,7 @@ Eigen::Matrix3d standing_axes(const Spot& spot, Face face) {
 
 /// Axes of an object that hangs: z = normal, y as near to up as the wall allows.
 Eigen::Matrix3d hanging_axes(const Spot& spot, const Eigen::Vector3d& up) {
-  const Eigen::Vector3d y =
-      tangent(up, spot.normal).value_or(spot.normal.cross(spot.x_axis));
+  const Eigen::Vector3d y = tangent(up, spot.normal).value_or(spot.normal.cross(spot.x_axis));
   Eigen::Matrix3d axes;
   axes << y.cross(spot.normal), y, spot.normal;
   return axes;
@@ -144,7 +144,8 @@ std::optional<slam::Pose> Anchor::world_from_anchor(const std::vector<PlaneRecor
 }
 
 Anchor move_anchor(const Anchor& anchor, const PlaneRecord& from, const PlaneRecord& to) {
-  return {to.id, to.world_from_plane().inverse() * from.world_from_plane() * anchor.plane_from_anchor};
+  return {to.id,
+          to.world_from_plane().inverse() * from.world_from_plane() * anchor.plane_from_anchor};
 }
 
 std::optional<Eigen::Affine3d> PlacedObject::world_from_model(

@@ -9,16 +9,16 @@
 
 namespace planecast::engine {
 
-/// Where content is held: a pose in a plane's own frame, so that refinements, loop closures and merges
-/// of the plane carry it. Without a plane (kNone) the pose is in the world.
+/// Where content is held: a pose in a plane's own frame, so that refinements, loop closures and
+/// merges of the plane carry it. Without a plane (kNone) the pose is in the world.
 ///
 /// The anchor's axes are those of the model: y up, z to the front. Its origin is the contact point.
 struct Anchor {
   int plane_id = slam::kNone;
   slam::Pose plane_from_anchor = slam::Pose::Identity();
 
-  /// The anchor in the world, by the present state of its plane. A plane that was merged away is found
-  /// by its old id. Nothing when the plane is gone altogether.
+  /// The anchor in the world, by the present state of its plane. A plane that was merged away is
+  /// found by its old id. Nothing when the plane is gone altogether.
   std::optional<slam::Pose> world_from_anchor(const std::vector<PlaneRecord>& planes) const;
 };
 
@@ -30,7 +30,7 @@ using ModelBox = Eigen::AlignedBox3d;
 
 struct PlacedObject {
   Anchor anchor;
-  double scale = 1.0;  ///< world units per model unit
+  double scale = 1.0;                                 ///< world units per model unit
   Eigen::Vector3d contact = Eigen::Vector3d::Zero();  ///< model point that sits on the anchor
   bool hangs = false;                                 ///< with its back to a wall
 
@@ -38,13 +38,14 @@ struct PlacedObject {
   std::optional<Eigen::Affine3d> world_from_model(const std::vector<PlaneRecord>& planes) const;
 };
 
-/// Puts a model on its plane. On a plane that is not vertical the model stands: bottom centre of its
-/// bounds on the place, y along the plane's normal, front (+z) towards the placing camera (or, for a
-/// place by plane, the mean camera) when `face` is camera. On a vertical plane it hangs, whatever it
-/// is: centre of its back on the place, +z along the normal, y along the world's up. A plane is taken
-/// as vertical by its class, or, when it has none, by its angle to a known up direction. `yaw` turns
-/// about the normal. Without `size` a model has its own size where the scale is known, else a quarter
-/// of the median depth. Throws UserError beginning with the object's place in the file.
+/// Puts a model on its plane. On a plane that is not vertical the model stands: bottom centre of
+/// its bounds on the place, y along the plane's normal, front (+z) towards the placing camera (or,
+/// for a place by plane, the mean camera) when `face` is camera. On a vertical plane it hangs,
+/// whatever it is: centre of its back on the place, +z along the normal, y along the world's up. A
+/// plane is taken as vertical by its class, or, when it has none, by its angle to a known up
+/// direction. `yaw` turns about the normal. Without `size` a model has its own size where the scale
+/// is known, else a quarter of the median depth. Throws UserError beginning with the object's place
+/// in the file.
 PlacedObject place_object(const Reconstruction& reconstruction, const SceneObject& object,
                           const ModelBox& box, const SizeUnit& unit, bool causal);
 

@@ -37,15 +37,16 @@ MeanView mean_view(const Reconstruction& reconstruction) {
   return view;
 }
 
-/// How likely a person looks down by this angle: mostly between level and steep, seldom straight down,
-/// hardly ever upwards.
+/// How likely a person looks down by this angle: mostly between level and steep, seldom straight
+/// down, hardly ever upwards.
 double pitch_likelihood(double down_deg) {
   if (down_deg < -20.0) return std::max(0.02, 1.0 - (-20.0 - down_deg) / 25.0);
   if (down_deg > 60.0) return std::max(0.1, 1.0 - (down_deg - 60.0) / 30.0);
   return 1.0;
 }
 
-double camera_likelihood(const MeanView& view, const Eigen::Vector3d& up, const UpOptions& options) {
+double camera_likelihood(const MeanView& view, const Eigen::Vector3d& up,
+                         const UpOptions& options) {
   if (view.world_from_level.empty()) return 0.5;
   double sum = 0.0;
   for (const Eigen::Matrix3d& axes : view.world_from_level) {
@@ -149,7 +150,8 @@ bool is_floor(const Reconstruction& reconstruction, const PlaneRecord& lowest,
   if (reconstruction.metric) {
     return median_camera_height(reconstruction) - height >= options.floor_below_camera_m;
   }
-  // Without a scale only company tells a floor from a table: something else to put things on, above it.
+  // Without a scale only company tells a floor from a table: something else to put things on, above
+  // it.
   constexpr double kClearlyAbove = 0.15;  // of the median depth
   return std::ranges::any_of(reconstruction.planes, [&](const PlaneRecord& plane) {
     return plane.plane_class == "horizontal" && plane.normal.dot(reconstruction.up) > 0.0 &&
@@ -160,7 +162,8 @@ bool is_floor(const Reconstruction& reconstruction, const PlaneRecord& lowest,
 }  // namespace
 
 UpEstimate estimate_up(const Reconstruction& reconstruction, const UpOptions& options) {
-  if (options.known_up && options.known_up->norm() > 0.0) return {options.known_up->normalized(), 1.0};
+  if (options.known_up && options.known_up->norm() > 0.0)
+    return {options.known_up->normalized(), 1.0};
   const MeanView view = mean_view(reconstruction);
   std::vector<Proposal> proposals;
   const auto propose = [&](const Eigen::Vector3d& up, double weight) {
@@ -172,8 +175,9 @@ UpEstimate estimate_up(const Reconstruction& reconstruction, const UpOptions& op
   propose(squared_to_walls(reconstruction, view.image_up, options), kCameraAlone);
   for (const PlaneRecord& plane : reconstruction.planes) {
     const bool down = plane.normal.dot(view.image_up + view.backward) < 0.0;
-    propose(family_mean(reconstruction, down ? Eigen::Vector3d(-plane.normal) : plane.normal, options),
-            1.0);
+    propose(
+        family_mean(reconstruction, down ? Eigen::Vector3d(-plane.normal) : plane.normal, options),
+        1.0);
   }
   const auto by_score = [](const Proposal& a, const Proposal& b) { return a.score < b.score; };
   const Proposal best = *std::ranges::max_element(proposals, by_score);

@@ -15,7 +15,8 @@ struct PlaneOutline {
 
 PlaneOutline plane_outline(const PlaneRecord& plane);
 
-/// Inside the outer ring and in no hole. Even-odd rule; a ring of fewer than 3 corners holds nothing.
+/// Inside the outer ring and in no hole. Even-odd rule; a ring of fewer than 3 corners holds
+/// nothing.
 bool contains(const PlaneOutline& outline, const Eigen::Vector2d& point);
 /// To the nearest edge of any ring, unsigned; infinite without edges.
 double distance_to_edge(const PlaneOutline& outline, const Eigen::Vector2d& point);

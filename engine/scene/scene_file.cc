@@ -56,7 +56,8 @@ PlanePlace read_plane_place(YamlMap& map) {
   const auto parsed = std::from_chars(place.plane.data(), end, id);
   const bool is_id = parsed.ec == std::errc() && parsed.ptr == end && id >= 0;
   if (!is_id && std::ranges::find(kPlaneRules, place.plane) == kPlaneRules.end()) {
-    map.fail("plane", "'plane' must be an id, largest-horizontal, largest-vertical, floor or nearest");
+    map.fail("plane",
+             "'plane' must be an id, largest-horizontal, largest-vertical, floor or nearest");
   }
   if (const auto at = map.numbers("at", 2)) {
     place.at = to_vector2(*at);
@@ -117,7 +118,8 @@ SceneObject read_object(const YAML::Node& node, const std::string& file, const f
   object.place = read_place(map);
   if (const auto size = map.number("size")) object.size = positive(map, "size", *size);
   object.yaw_deg = map.number("yaw").value_or(0.0);
-  if (map.choice("face", {"camera", "keep"}).value_or("camera") == "keep") object.face = Face::kKeep;
+  if (map.choice("face", {"camera", "keep"}).value_or("camera") == "keep")
+    object.face = Face::kKeep;
   read_animation(map, object);
   map.finish();
   return object;

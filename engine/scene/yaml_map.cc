@@ -8,8 +8,8 @@
 namespace planecast::engine {
 namespace {
 
-/// The reading of one scalar, or nothing when it is no such thing. yaml-cpp takes "nan" and ".inf" for
-/// numbers; nothing in our files may be that.
+/// The reading of one scalar, or nothing when it is no such thing. yaml-cpp takes "nan" and ".inf"
+/// for numbers; nothing in our files may be that.
 std::optional<double> to_number(const YAML::Node& node) {
   if (!node.IsScalar()) return std::nullopt;
   double value = 0.0;
@@ -27,7 +27,8 @@ std::string yaml_location(const std::string& file, const YAML::Node& node) {
 YamlMap::YamlMap(YAML::Node node, std::string file, std::string what)
     : node_(std::move(node)), file_(std::move(file)), what_(std::move(what)) {
   if (!node_.IsMap()) {
-    throw UserError(yaml_location(file_, node_) + ": " + what_ + " must be a mapping of keys to values");
+    throw UserError(yaml_location(file_, node_) + ": " + what_ +
+                    " must be a mapping of keys to values");
   }
 }
 

@@ -9,8 +9,8 @@
 
 namespace planecast::engine {
 
-/// Checked access to one mapping of a YAML file. Every getter marks its key as known; finish() refuses
-/// the keys nobody asked for. All failures are UserErrors of the form "file:LINE: reason".
+/// Checked access to one mapping of a YAML file. Every getter marks its key as known; finish()
+/// refuses the keys nobody asked for. All failures are UserErrors of the form "file:LINE: reason".
 class YamlMap {
  public:
   /// `what` names the mapping in messages ("object", "light").
@@ -25,7 +25,8 @@ class YamlMap {
   std::optional<bool> boolean(const std::string& key);
   std::optional<std::string> text(const std::string& key);
   /// One of `allowed`.
-  std::optional<std::string> choice(const std::string& key, const std::vector<std::string>& allowed);
+  std::optional<std::string> choice(const std::string& key,
+                                    const std::vector<std::string>& allowed);
   /// A list of exactly `count` numbers.
   std::optional<std::vector<double>> numbers(const std::string& key, int count);
   std::optional<YamlMap> map(const std::string& key);

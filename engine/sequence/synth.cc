@@ -9,6 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
 
+#include "engine/assets.h"
 #include "engine/convert.h"
 #include "engine/sequence/camera_file.h"
 #include "engine/sequence/synth/camera_effects.h"
@@ -81,10 +82,14 @@ cv::Mat bgr_of(const render::ImageU8& rgb) {
   return bgr;
 }
 
-cv::Mat mask_of(const render::Image<std::uint16_t>& labels) {
+/// Labels as they are, but 0 for planes that face away: on an edge that two faces share, rounding
+/// may show the one behind.
+cv::Mat mask_of(const render::Image<std::uint16_t>& labels, const std::vector<char>& hidden) {
   cv::Mat mask(labels.height, labels.width, CV_8U);
   std::transform(labels.pixels.begin(), labels.pixels.end(), mask.begin<std::uint8_t>(),
-                 [](std::uint16_t label) { return static_cast<std::uint8_t>(label); });
+                 [&hidden](std::uint16_t label) {
+                   return static_cast<std::uint8_t>(hidden[label] != 0 ? 0 : label);
+                 });
   return mask;
 }
 
@@ -130,7 +135,7 @@ class Generator {
         renderer_.draw_opaque(painted_, to_render_camera(camera_, cam_from_world));
     FramePictures pictures;
     pictures.bgr = bgr_of(images.rgb);
-    pictures.mask = mask_of(images.labels);
+    pictures.mask = mask_of(images.labels, hidden_labels(scene_.path.world_from_cam(time_s)));
     cv::Mat depth_m(camera_.height, camera_.width, CV_32F);
     std::copy(images.depth.pixels.begin(), images.depth.pixels.end(), depth_m.begin<float>());
     if (is_covered(scene_, time_s)) {
@@ -148,9 +153,19 @@ class Generator {
   const synth::Scene& scene() const { return scene_; }
 
  private:
+  /// By label, whether its plane shows the camera its back.
+  std::vector<char> hidden_labels(const slam::Pose& world_from_cam) const {
+    std::vector<char> hidden(scene_.model.planes.size() + 1, 0);
+    for (const synth::TruePlane& plane : scene_.model.planes) {
+      const double side = plane.normal.dot(world_from_cam.translation()) + plane.offset;
+      hidden[static_cast<std::size_t>(plane.label)] = side <= 0.0 ? 1 : 0;
+    }
+    return hidden;
+  }
   static render::RendererOptions renderer_options(const SynthOptions& options) {
     render::RendererOptions renderer;
-    renderer.shader_dir = options.shader_dir;
+    renderer.shader_dir =
+        options.shader_dir.empty() ? asset("shaders").string() : options.shader_dir;
     return renderer;
   }
   /// Small pictures need no large textures.

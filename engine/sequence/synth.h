@@ -17,7 +17,7 @@ struct SynthOptions {
   double fps = 30.0;
   bool effects = true;  ///< camera noise, vignetting, blur, exposure drift; a noisy depth sensor
   double depth_factor = 5000;  ///< depth image units per metre
-  std::string shader_dir = "assets/shaders";
+  std::string shader_dir;      ///< empty: the shaders among the assets
 };
 
 std::vector<std::string> synthetic_scene_names();

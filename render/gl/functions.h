@@ -81,7 +81,6 @@ class GlContext;
   X(PFNGLSHADERSOURCEPROC, ShaderSource)                                               \
   X(PFNGLSTENCILFUNCPROC, StencilFunc)                                                 \
   X(PFNGLSTENCILOPPROC, StencilOp)                                                     \
-  X(PFNGLTEXTUREPARAMETERFPROC, TextureParameterf)                                     \
   X(PFNGLTEXTUREPARAMETERIPROC, TextureParameteri)                                     \
   X(PFNGLTEXTURESTORAGE2DPROC, TextureStorage2D)                                       \
   X(PFNGLTEXTURESUBIMAGE2DPROC, TextureSubImage2D)                                     \

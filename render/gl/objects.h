@@ -42,15 +42,15 @@ class GlHandle {
   GLuint id_ = 0;
 };
 
-#define PLANECAST_GL_TRAITS(name, create_call, destroy_call)       \
-  struct name##Traits {                                            \
-    static GLuint create(const Gl& gl) {                           \
-      GLuint id = 0;                                               \
-      create_call;                                                 \
-      return id;                                                   \
-    }                                                              \
-    static void destroy(const Gl& gl, GLuint id) { destroy_call; } \
-  };                                                               \
+#define PLANECAST_GL_TRAITS(name, create_call, destroy_call)         \
+  struct name##Traits {                                              \
+    static GLuint create(const Gl& gl) {                             \
+      GLuint id = 0;                                                 \
+      (create_call);                                                 \
+      return id;                                                     \
+    }                                                                \
+    static void destroy(const Gl& gl, GLuint id) { (destroy_call); } \
+  };                                                                 \
   using name = GlHandle<name##Traits>;
 
 PLANECAST_GL_TRAITS(BufferHandle, gl.CreateBuffers(1, &id), gl.DeleteBuffers(1, &id))

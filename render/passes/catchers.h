@@ -6,8 +6,8 @@
 
 #include "render/gl/objects.h"
 #include "render/gl/program.h"
+#include "render/passes/catcher_plan.h"
 #include "render/passes/model_passes.h"
-#include "render/passes/plane_frame.h"
 #include "render/passes/shadow_map.h"
 #include "render/scene.h"
 
@@ -23,9 +23,9 @@ struct CatcherInput {
   std::uint64_t casters = 0;                              ///< changes when casters or the sun do
 };
 
-/// Shadows on the planes of the recorded world. Two parts, each made once for casters and light that
-/// stand still: the sun's shadow with a penumbra growing with the distance of what casts it, and the
-/// contact shadow, the surroundings' light that the objects keep from the plane.
+/// Shadows on the planes of the recorded world. Two parts, each made once for casters and light
+/// that stand still: the sun's shadow with a penumbra growing with the distance of what casts it,
+/// and the contact shadow, the surroundings' light that the objects keep from the plane.
 class CatcherPass {
  public:
   explicit CatcherPass(const Gl& gl, const ModelPasses& models);
@@ -47,29 +47,23 @@ class CatcherPass {
   };
   /// Maps of one catcher; kept from frame to frame.
   struct Maps {
-    std::uint64_t casters = 0;
+    std::uint64_t signature = 0;
     TextureHandle penumbra;
     TextureHandle contact;
+    int contact_side = 0;
   };
   struct Prepared {
-    PlaneFrame frame;
+    CatcherPlan plan;
     const Mask* mask = nullptr;
     const Maps* maps = nullptr;
-    PlaneRegion region;          ///< what is drawn
-    PlaneRegion contact_region;  ///< empty: no contact shadow
-    bool sun = false;
-    float farthest_gap_m = 0.0F;
-    float sun_share = 0.0F;
-    float contact_strength = 0.0F;
     float edge_softness_m = 0.0F;
   };
 
-  void prepare_patch(ShaderLibrary& shaders, const CatcherInput& input, const PlanePatch& patch);
-  const Mask& mask_of(const PlanePatch& patch, const PlaneFrame& frame);
+  const Mask& mask_of(const PlanePatch& patch, const PlaneFrame& frame, std::uint64_t hash);
   void make_penumbra(ShaderLibrary& shaders, const CatcherInput& input, const PlaneFrame& frame,
                      Maps& maps);
-  void make_contact(ShaderLibrary& shaders, const CatcherInput& input, const PlaneFrame& frame,
-                    const PlaneRegion& region, float reach_m, Maps& maps);
+  void make_contact(ShaderLibrary& shaders, const CatcherInput& input, const CatcherPlan& plan,
+                    Maps& maps);
   void begin_map(GLuint texture, int size) const;
 
   const Gl* gl_;
@@ -78,9 +72,9 @@ class CatcherPass {
   FramebufferHandle framebuffer_;
   TextureHandle heights_;
   TextureHandle unblurred_contact_;
+  int contact_side_ = 0;
   std::map<std::uint64_t, Mask> masks_;
   std::map<std::size_t, Maps> maps_;  ///< by the patch's place in the scene
-  std::size_t patch_index_ = 0;
   std::vector<Prepared> prepared_;
 };
 

@@ -149,7 +149,7 @@ void ModelPasses::draw_shaded(const DrawItem& item, const ShadingInput& input) c
     program.set("u_eye", camera_position(camera));
     program.set("u_to_light", glm::normalize(sun.direction_to_light));
     program.set("u_sun_radiance", sun.radiance);
-    if (input.shadow != nullptr) input.shadow->bind(program, sun, true);
+    if (input.shadow != nullptr) input.shadow->bind(program, sun);
   }
   gl_->FrontFace(front_face(camera, item.world_from_shape));
   // Blended double-sided items are culled side by side by the caller.

@@ -16,8 +16,7 @@ std::vector<Edge> all_edges(const PlanePatch& patch, const PlaneFrame& frame) {
   std::vector<Edge> edges;
   const auto add_ring = [&](const std::vector<glm::vec3>& ring) {
     for (std::size_t i = 0; i < ring.size(); ++i) {
-      edges.push_back(
-          {frame.coordinates(ring[i]), frame.coordinates(ring[(i + 1) % ring.size()])});
+      edges.push_back({frame.coordinates(ring[i]), frame.coordinates(ring[(i + 1) % ring.size()])});
     }
   };
   add_ring(patch.outer);
@@ -95,10 +94,12 @@ ImageF distance_to_edge(const PlanePatch& patch, const PlaneFrame& frame, const 
   };
   ImageF distance(cells(size.x), cells(size.y), 1);
   const std::vector<Edge> edges = all_edges(patch, frame);
+  std::size_t next = 0;
   for (int row = 0; row < distance.height; ++row) {
     for (int column = 0; column < distance.width; ++column) {
-      const glm::vec2 share((static_cast<float>(column) + 0.5F) / static_cast<float>(distance.width),
-                            (static_cast<float>(row) + 0.5F) / static_cast<float>(distance.height));
+      const glm::vec2 share(
+          (static_cast<float>(column) + 0.5F) / static_cast<float>(distance.width),
+          (static_cast<float>(row) + 0.5F) / static_cast<float>(distance.height));
       const glm::vec2 p = region.min + share * size;
       float nearest2 = std::numeric_limits<float>::max();
       bool inside = false;
@@ -107,8 +108,7 @@ ImageF distance_to_edge(const PlanePatch& patch, const PlaneFrame& frame, const 
         inside ^= crosses_ray(edge, p);
       }
       const float away = std::sqrt(nearest2);
-      distance.pixels[static_cast<std::size_t>(row * distance.width + column)] =
-          inside ? away : -away;
+      distance.pixels[next++] = inside ? away : -away;
     }
   }
   return distance;

@@ -99,7 +99,7 @@ void ShadowMap::begin(const ShadowProjection& projection) {
   gl_->Disable(GL_BLEND);
 }
 
-void ShadowMap::bind(const Program& program, const Sun& sun, bool enabled) const {
+void ShadowMap::bind(const Program& program, const Sun& sun) const {
   gl_->BindTextureUnit(kUnitShadowCompare, depth_.id());
   gl_->BindSampler(kUnitShadowCompare, compare_.id());
   gl_->BindTextureUnit(kUnitShadowRaw, depth_.id());
@@ -111,7 +111,6 @@ void ShadowMap::bind(const Program& program, const Sun& sun, bool enabled) const
   program.set("u_shadow_depth_m", projection_.depth_m);
   program.set("u_shadow_texel_m", projection_.texel_m);
   program.set("u_shadow_radius_m", sun.softness * projection_.texel_m);
-  program.set("u_shadow_enabled", enabled ? 1.0F : 0.0F);
 }
 
 }  // namespace planecast::render

@@ -30,8 +30,8 @@ class ShadowMap {
 
   /// Binds for drawing with casters of `projection` and clears. Draw with front-to-back depth LESS.
   void begin(const ShadowProjection& projection);
-  /// Binds the two samplers and sets what shadow.glsl reads. `enabled` false: all is lit.
-  void bind(const Program& program, const Sun& sun, bool enabled) const;
+  /// Binds the two samplers and sets what shadow.glsl reads.
+  void bind(const Program& program, const Sun& sun) const;
   const ShadowProjection& projection() const { return projection_; }
   GLuint depth_texture() const { return depth_.id(); }
   int size() const { return size_; }

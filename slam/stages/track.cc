@@ -105,7 +105,8 @@ PoseEstimate Tracker::predict_and_match(const ImageFeatures& image, const Map& m
 bool Tracker::wants_keyframe(const ImageFeatures& image, const Map& map,
                              const TrackResult& result) const {
   const int since = image.frame_index - last_keyframe_frame_;
-  const int min_observers = map.keyframes.size() <= 2 ? 2 : 3;
+  // Depth counts as an observer of its own.
+  const int min_observers = (map.keyframes.size() <= 2 ? 2 : 3) - (rgbd_ ? 1 : 0);
   int reference_landmarks = 0;
   for (const LandmarkId id : map.keyframes.at(result.reference).landmarks) {
     if (id == kNone) continue;

@@ -17,8 +17,8 @@ using Eigen::Vector3d;
 constexpr double kPi = std::numbers::pi;
 
 /// Small things: never labelled, painted finely.
-FlatOptions small_things() { return {"none", 900.0F, 0.012F}; }
-FlatOptions furniture_faces() { return {"", 550.0F, 0.025F}; }
+FlatOptions small_things() { return {"none", 800.0F, 0.02F}; }
+FlatOptions furniture_faces() { return {"", 500.0F, 0.035F}; }
 
 Place on(const Place& place, const Vector3d& local, double turn = 0.0) {
   return {place.to_world(local), place.yaw + turn};
@@ -72,13 +72,13 @@ Texture door_front(const Texture& panel, double width, double height, int doors)
 void add_cushion(RoomModel& model, const Place& place, const Vector3d& size, double squareness,
                  const Texture& texture) {
   constexpr int kCols = 28;
-  constexpr int kRows = 16;
+  constexpr int kRows = 14;
   const auto power = [squareness](double x) {
-    return std::copysign(std::pow(std::abs(x), squareness), x);
+    return std::copysign(std::pow(std::abs(x), squareness), x);  // 0 at the poles: closed
   };
   std::vector<Vector3d> points;
   for (int j = 0; j <= kRows; ++j) {
-    const double polar = kPi * (static_cast<double>(j) / kRows - 0.5) * 0.999;
+    const double polar = kPi * (static_cast<double>(j) / kRows - 0.5);
     for (int i = 0; i <= kCols; ++i) {
       const double around = 2.0 * kPi * i / kCols;
       const Vector3d local(0.5 * size.x() * power(std::cos(polar)) * power(std::cos(around)),
@@ -152,11 +152,14 @@ void add_table(RoomModel& model, const Place& place, const Vector3d& size, WoodK
   constexpr double kBoard = 0.032;
   constexpr double kLeg = 0.06;
   const Texture wood_texture = furniture_wood(wood_kind, seed);
-  FlatOptions options{"", 950.0F, 0.012F};
-  BoxTextures board = BoxTextures::all(wood_texture);
-  board.top = with_decals(wood_texture, std::move(top_decals));
-  add_box(model, on(place, {0, 0, size.z() - kBoard}), {size.x(), size.y(), kBoard}, board, options,
-          true);
+  const Place board = on(place, {0, 0, size.z() - kBoard});
+  add_box(model, board, {size.x(), size.y(), kBoard}, BoxTextures::all(wood_texture),
+          furniture_faces(), true);
+  // The top, added before the underside, is what is looked at.
+  Patch& top = model.patches[model.patches.size() - 2];
+  top.texture = with_decals(wood_texture, std::move(top_decals));
+  top.texels_per_m = 950.0F;
+  top.light_texel_m = 0.014F;
   const double x = 0.5 * size.x() - 0.05 - 0.5 * kLeg;
   const double y = 0.5 * size.y() - 0.05 - 0.5 * kLeg;
   const auto upright = [wood_texture](float u, float v) { return wood_texture(v, u); };

@@ -15,9 +15,10 @@ using Eigen::Vector3f;
 
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kLift = 1e-3F;          // rays start above the surface, metres
-constexpr float kAmbientReach = 2.5F;   // beyond it, the surroundings count as open
+constexpr float kAmbientReach = 1.6F;   // beyond it, the surroundings count as open
 constexpr float kContactScale = 0.45F;  // within about this far, surfaces take each other's light
 constexpr float kSunRadius = 0.012F;    // a little more than the sun's 0.0047 rad, for haze
+constexpr float kNegligible = 2e-4F;    // of what arrives; a grey level is ten times as much
 constexpr float kBarShare = 0.045F;     // half a window bar over a pane's side
 
 struct Site {
@@ -84,9 +85,10 @@ Color window_at(const WindowLight& window, const RayCaster& rays, const Site& si
       const float cos_here = site.normal.dot(direction);
       const float cos_there = -facing.dot(direction);
       if (cos_here <= 0.0F || cos_there <= 0.0F) continue;
-      if (rays.blocked(site.point, direction, distance - 0.01F)) continue;
       const float squared = std::max(distance * distance, 0.02F);
-      sum += window.radiance * (cos_here * cos_there * area / (kPi * squared));
+      const float share = cos_here * cos_there * area / (kPi * squared);
+      if (share < kNegligible || rays.blocked(site.point, direction, distance - 0.01F)) continue;
+      sum += share * window.radiance;
     }
   }
   return sum;
@@ -102,9 +104,10 @@ Color lamp_at(const LampLight& lamp, const RayCaster& rays, const Site& site, in
     const Vector3f to = lamp.position + lamp.radius_m * offset - site.point;
     const float distance = to.norm();
     const float cosine = site.normal.dot(to) / distance;
-    if (cosine <= 0.0F || rays.blocked(site.point, to / distance, distance)) continue;
-    const float squared = std::max(distance * distance, 0.01F);
-    sum += lamp.intensity * (cosine / (kPi * squared));
+    const float share = cosine / (kPi * std::max(distance * distance, 0.01F));
+    if (share * lamp.intensity.maxCoeff() < 10.0F * kNegligible) continue;
+    if (rays.blocked(site.point, to / distance, distance)) continue;
+    sum += share * lamp.intensity;
   }
   return sum / static_cast<float>(count);
 }
@@ -242,18 +245,19 @@ LightMap bake_light(const RoomModel& model, const std::vector<Color>& mean_color
     map.values.assign(map.values.size(), Color::Ones());
     return map;
   }
+  const BakeRays& count = patch.label != 0 ? options.flat : options.small;
   Random random(named_seed("light", static_cast<std::uint64_t>(patch_index)));
   for (int y = 0; y < map.height; ++y) {
     for (int x = 0; x < map.width; ++x) {
       const Site site =
           site_at(patch, (static_cast<float>(x) + 0.5F) / static_cast<float>(map.width),
                   (static_cast<float>(y) + 0.5F) / static_cast<float>(map.height));
-      Color sum = ambient_at(model, mean_colors, rays, site, options.ambient_rays, random);
+      Color sum = ambient_at(model, mean_colors, rays, site, count.ambient, random);
       for (const WindowLight& window : model.windows) {
-        sum += window_at(window, rays, site, options.window_rays, random);
+        sum += window_at(window, rays, site, count.window, random);
       }
       for (const LampLight& lamp : model.lamps) {
-        sum += lamp_at(lamp, rays, site, options.lamp_rays, random);
+        sum += lamp_at(lamp, rays, site, count.lamp, random);
       }
       map.values[static_cast<std::size_t>(y * map.width + x)] = sum;
     }

@@ -17,10 +17,16 @@ struct LightMap {
   Color at(float u, float v) const;  ///< bilinear; u, v in [0, 1]
 };
 
+/// Rays for each place of the grid. What is small or bent shows noise less.
+struct BakeRays {
+  int ambient;
+  int window;
+  int lamp;
+};
+
 struct BakeOptions {
-  int ambient_rays = 48;
-  int window_rays = 16;
-  int lamp_rays = 6;
+  BakeRays flat = {32, 9, 4};
+  BakeRays small = {14, 4, 2};
   float detail = 1.0F;  ///< of the grid; 1 is right for pictures 640 wide
 };
 

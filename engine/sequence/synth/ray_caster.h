@@ -27,12 +27,17 @@ class RayCaster {
   struct Triangle {
     Eigen::Vector3f corner, edge_a, edge_b;
     int patch;
+
+    Eigen::Vector3f low() const;
+    Eigen::Vector3f high() const;
+    Eigen::Vector3f middle() const;
   };
   struct Node {
-    Eigen::Vector3f low, high;
-    int first = 0;  ///< of its triangles, or its first child (the second follows)
-    int count = 0;  ///< 0: inner node
+    Eigen::Array4f low, high;  ///< the fourth lane is 0
+    int first = 0;             ///< of its triangles, or its first child (the second follows)
+    int count = 0;             ///< 0: inner node
   };
+  int split(int first, int count, Node& node);
   template <bool any_hit>
   RayHit trace(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float reach) const;
 

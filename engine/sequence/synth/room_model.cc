@@ -20,6 +20,10 @@ std::string class_of(const Vector3d& normal) {
   return std::abs(normal.z()) < 0.01 ? "vertical" : "other";
 }
 
+/// To whole micrometres (2^-20 m): sums of such numbers are exact also as floats within 16 m, so
+/// that faces which share an edge leave no crack between them.
+Vector3d snap(const Vector3d& v) { return (v * 0x1.0p20).array().rint() * 0x1.0p-20; }
+
 Vector3f interpolate(const Patch& patch, const std::vector<Vector3f>& values, float u, float v) {
   const float x = std::clamp(u, 0.0F, 1.0F) * static_cast<float>(patch.cols);
   const float y = std::clamp(v, 0.0F, 1.0F) * static_cast<float>(patch.rows);
@@ -42,8 +46,8 @@ Patch curved_patch(int cols, int rows, const std::vector<Vector3d>& points,
   for (const Vector3d& point : points) patch.positions.push_back(point.cast<float>());
   for (const Vector3d& normal : normals) patch.normals.push_back(normal.cast<float>());
   patch.texture = std::move(texture);
-  patch.light_texel_m = 0.012F;
-  patch.texels_per_m = 900.0F;
+  patch.light_texel_m = 0.02F;
+  patch.texels_per_m = 700.0F;
   return patch;
 }
 
@@ -63,8 +67,11 @@ Vector3d Place::turn(const Vector3d& local) const {
 
 Vector3d Place::to_world(const Vector3d& local) const { return position + turn(local); }
 
-int add_flat(RoomModel& model, const Vector3d& origin, const Vector3d& u_axis,
-             const Vector3d& v_axis, Texture texture, const FlatOptions& options) {
+int add_flat(RoomModel& model, const Vector3d& exact_origin, const Vector3d& exact_u,
+             const Vector3d& exact_v, Texture texture, const FlatOptions& options) {
+  const Vector3d origin = snap(exact_origin);
+  const Vector3d u_axis = snap(exact_u);
+  const Vector3d v_axis = snap(exact_v);
   const Vector3d cross = u_axis.cross(v_axis);
   const double area = cross.norm();
   const Vector3d normal = cross / area;
@@ -93,19 +100,17 @@ int add_flat(RoomModel& model, const Vector3d& origin, const Vector3d& u_axis,
 
 void add_box(RoomModel& model, const Place& place, const Vector3d& size,
              const BoxTextures& textures, const FlatOptions& options, bool underside) {
-  const double x = 0.5 * size.x();
-  const double y = 0.5 * size.y();
-  const Vector3d across = place.turn({size.x(), 0, 0});
-  const Vector3d deep = place.turn({0, size.y(), 0});
-  const Vector3d up(0, 0, size.z());
-  add_flat(model, place.to_world({-x, -y, 0}), across, up, textures.front, options);
-  add_flat(model, place.to_world({x, -y, 0}), deep, up, textures.right, options);
-  add_flat(model, place.to_world({x, y, 0}), -across, up, textures.back, options);
-  add_flat(model, place.to_world({-x, y, 0}), -deep, up, textures.left, options);
-  add_flat(model, place.to_world({-x, -y, size.z()}), across, deep, textures.top, options);
-  if (underside) {
-    add_flat(model, place.to_world({-x, y, 0}), across, -deep, textures.front, options);
-  }
+  // Every corner is the sum of the same numbers: watertight.
+  const Vector3d across = snap(place.turn({size.x(), 0, 0}));
+  const Vector3d deep = snap(place.turn({0, size.y(), 0}));
+  const Vector3d up = snap({0, 0, size.z()});
+  const Vector3d foot = snap(place.to_world({-0.5 * size.x(), -0.5 * size.y(), 0}));
+  add_flat(model, foot, across, up, textures.front, options);
+  add_flat(model, foot + across, deep, up, textures.right, options);
+  add_flat(model, foot + across + deep, -across, up, textures.back, options);
+  add_flat(model, foot + deep, -deep, up, textures.left, options);
+  add_flat(model, foot + up, across, deep, textures.top, options);
+  if (underside) add_flat(model, foot + deep, across, -deep, textures.front, options);
 }
 
 void add_revolution(RoomModel& model, const Place& place, const std::vector<ProfilePoint>& profile,
@@ -141,12 +146,12 @@ void add_revolution(RoomModel& model, const Place& place, const std::vector<Prof
 
 void add_ball(RoomModel& model, const Vector3d& centre, double radius, Texture texture) {
   std::vector<ProfilePoint> profile;
-  constexpr int kRings = 12;
-  for (int i = 0; i <= kRings; ++i) {
-    const double angle = std::numbers::pi * (static_cast<double>(i) / kRings - 0.5);
+  const int rings = radius < 0.02 ? 5 : 10;
+  for (int i = 0; i <= rings; ++i) {
+    const double angle = std::numbers::pi * (static_cast<double>(i) / rings - 0.5);
     profile.push_back({radius * std::cos(angle), radius * std::sin(angle)});
   }
-  add_revolution(model, {centre, 0.0}, profile, std::move(texture), 20);
+  add_revolution(model, {centre, 0.0}, profile, std::move(texture), radius < 0.02 ? 8 : 20);
 }
 
 void add_tube(RoomModel& model, const std::vector<Vector3d>& path, double radius, Texture texture,

@@ -1,6 +1,8 @@
 #include "engine/sequence/synth/scenes.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -71,7 +73,8 @@ ShellOptions living_room(std::uint64_t seed) {
   shell.floor = parquet(WoodKind::kOak, s);
   shell.walls = {plaster(paint(0xEFEAE0), s + 1), plaster(paint(0xEFEAE0), s + 2),
                  plaster(paint(0x8FA6A3), s + 3), plaster(paint(0xEFEAE0), s + 4)};
-  shell.wall_texels_per_m = {450, 250, 450, 250};
+  shell.wall_texels_per_m = {420, 220, 420, 220};
+  shell.floor_texels_per_m = 380;
   return shell;
 }
 
@@ -82,24 +85,25 @@ void furnish_table(RoomModel& model, std::uint64_t seed) {
   const Vector3d size = table_size();
   const Place table{table_middle(), 0.0};
   add_table(model, table, size, WoodKind::kWalnut,
-            {lay(PrintKind::kMagazine, 0.98, 0.50, 0.21, 0.28, 0.35, seed + 41),
+            {lay(PrintKind::kMagazine, 1.07, 0.55, 0.21, 0.28, 0.35, seed + 41),
              lay(PrintKind::kPage, 0.28, 0.10, 0.21, 0.297, -0.25, seed + 42)},
             static_cast<std::uint32_t>(seed) + 11);
   const auto at = [&](double x, double y, double yaw) {
     return Place{table.to_world({x, y, size.z()}), yaw};
   };
-  add_book_stack(model, at(-0.53, 0.24, 0.3), 4, seed + 21);
+  // The middle stays free.
+  add_book_stack(model, at(-0.56, 0.22, 0.3), 4, seed + 21);
   add_lamp(model, at(-0.60, -0.27, 0.0), 0.46, 0.26, static_cast<std::uint32_t>(seed) + 22);
-  add_fruit_bowl(model, at(-0.16, 0.27, 0.0), seed + 23);
-  add_mug(model, at(0.14, -0.30, 0.7), paint(0x3E6F86), 24);
-  add_mug(model, at(0.62, 0.02, -1.9), paint(0xC8573F), 25);
-  add_plant(model, at(0.60, 0.33, 0.0), 0.13, 11, 0.13, seed + 26);
-  add_toy_block(model, at(0.47, -0.31, 0.5), 0.07, seed + 27);
-  add_toy_block(model, at(0.57, -0.26, 1.1), 0.055, seed + 28);
-  add_pencil(model, table.to_world({-0.20, -0.26, size.z() + 0.0037}),
-             table.to_world({-0.08, -0.33, size.z() + 0.0037}), paint(0xE0A526));
-  add_pencil(model, table.to_world({-0.29, -0.12, size.z() + 0.0037}),
-             table.to_world({-0.17, -0.03, size.z() + 0.0037}), paint(0x2E6DA4));
+  add_fruit_bowl(model, at(-0.26, 0.27, 0.0), seed + 23);
+  add_mug(model, at(-0.10, -0.33, 0.7), paint(0x3E6F86), 24);
+  add_mug(model, at(0.63, -0.04, -1.9), paint(0xC8573F), 25);
+  add_plant(model, at(0.22, -0.33, 0.0), 0.12, 11, 0.12, seed + 26);
+  add_toy_block(model, at(0.52, -0.33, 0.5), 0.07, seed + 27);
+  add_toy_block(model, at(0.62, -0.27, 1.1), 0.055, seed + 28);
+  add_pencil(model, table.to_world({-0.24, -0.26, size.z() + 0.0037}),
+             table.to_world({-0.15, -0.16, size.z() + 0.0037}), paint(0xE0A526));
+  add_pencil(model, table.to_world({-0.40, -0.22, size.z() + 0.0037}),
+             table.to_world({-0.28, -0.16, size.z() + 0.0037}), paint(0x2E6DA4));
 }
 
 Scene living_room_with_table(std::uint64_t seed) {
@@ -112,7 +116,14 @@ Scene living_room_with_table(std::uint64_t seed) {
                            hang(PrintKind::kBotanical, 3.62, 1.15, 0.42, 0.60, seed + 3)};
   shell.decals[kWallX0] = {hang(PrintKind::kMap, 2.65, 1.05, 0.90, 0.68, seed + 4),
                            hang(PrintKind::kBlocks, 0.22, 1.20, 0.36, 0.36, seed + 5)};
+  shell.decals[kWallX1] = {hang(PrintKind::kShapes, 0.40, 1.15, 0.60, 0.80, seed + 51),
+                           hang(PrintKind::kMountains, 1.55, 1.25, 1.00, 0.70, seed + 52),
+                           hang(PrintKind::kBotanical, 2.95, 1.20, 0.50, 0.70, seed + 53)};
+  shell.decals[kWallY1] = {hang(PrintKind::kMap, 0.50, 1.10, 0.90, 0.70, seed + 54),
+                           hang(PrintKind::kBlocks, 3.35, 1.15, 0.70, 0.70, seed + 55)};
   add_shell(model, shell);
+  model.ambient = Color(0.40F, 0.40F, 0.41F);
+  model.exposure = 1.15F;
   add_window(model, shell, kWallX0, 1.05, 0.95, 1.2, 1.30, Color(2.3F, 2.6F, 3.0F), seed + 6);
   model.sun = {sun_direction(-0.80, -0.12, 0.55), Color(2.1F, 1.85F, 1.45F)};
   add_curtain(model, {0.10, 0.70, 2.36}, {0.10, 1.06, 2.36}, 2.3, paint(0xC9BBA2), 8);
@@ -194,22 +205,22 @@ Scene room(std::uint64_t seed) {
   Scene scene = living_room_with_table(seed);
   RoomModel& model = scene.model;
   ShellOptions shell = living_room(seed);
-  add_cabinet(model, against_wall(shell, kWallX1, 1.4, 0.25), {1.1, 0.45, 1.05}, WoodKind::kOak, 2,
+  add_cabinet(model, against_wall(shell, kWallX1, 1.4, 0.25), {1.1, 0.45, 0.95}, WoodKind::kOak, 2,
               31);
-  add_book_stack(model, {{4.36, 2.75, 1.05}, 1.2}, 3, seed + 32);
+  add_book_stack(model, {{4.36, 2.75, 0.95}, 1.2}, 3, seed + 32);
   add_bookshelf(model, against_wall(shell, kWallY1, 2.4, 0.17), {1.0, 0.30, 1.6}, WoodKind::kOak, 4,
                 seed + 33);
   add_plant(model, {{4.15, 3.55, 0}, 0.3}, 0.36, 14, 0.40, seed + 34);
   std::vector<PathKey> keys;
-  const Vector3d middle(2.35, 2.1, 0.0);
+  const Vector3d middle(2.75, 2.60, 0.0);
   constexpr int kSteps = 16;
   for (int i = 0; i <= kSteps; ++i) {
-    // Around the free part of the room, looking outwards and ahead; the end repeats the beginning.
+    // Around the free part of the room, looking across it; the end repeats the beginning.
     const double a = 2.0 * kPi * i / kSteps + 0.9;
     PathKey key;
     key.time_s = 30.0 * i / kSteps;
-    key.eye = middle + Vector3d(0.35 + 1.05 * std::cos(a), 0.75 + 0.55 * std::sin(a), 1.50);
-    key.target = middle + Vector3d(2.3 * std::cos(a + 0.35), 2.0 * std::sin(a + 0.35), 0.85);
+    key.eye = middle + Vector3d(1.10 * std::cos(a), 0.85 * std::sin(a), 1.50);
+    key.target = middle - Vector3d(1.6 * std::cos(a + 0.25), 1.6 * std::sin(a + 0.25), -0.90);
     keys.push_back(key);
   }
   scene.path = CameraPath(keys, {0.010, 0.45, 0.6, 0.012, 1.7}, named_seed("room path", seed));
@@ -320,6 +331,57 @@ Scene corridor(std::uint64_t seed) {
   return scene;
 }
 
+/// Steps that rise towards -y up to a landing at `corner`, 1.6 m wide. Treads and risers are planes
+/// of their own; each side is one plane with the outline of the stair.
+void add_steps(RoomModel& model, const Vector3d& corner, int count, const Texture& tread,
+               const Texture& riser) {
+  constexpr double kWidth = 1.6;
+  constexpr double kDepth = 0.29;
+  constexpr double kRise = 0.175;
+  constexpr double kLanding = 0.6;
+  const Vector3d across(kWidth, 0, 0);
+  std::array<std::vector<Vector3d>, 2> outline = {
+      {{corner, corner + Vector3d(0, 0, count * kRise)},
+       {corner + across, corner + across + Vector3d(0, 0, count * kRise)}}};
+  std::array<std::vector<int>, 2> side_patches;
+  for (int i = count - 1; i >= 0; --i) {  // from the landing down
+    const int below = count - 1 - i;
+    const double back = below == 0 ? 0.0 : kLanding + kDepth * (below - 1);
+    const double front = kLanding + kDepth * below;
+    const double top = kRise * (i + 1);
+    add_flat(model, corner + Vector3d(0, back, top), across, {0, front - back, 0}, tread,
+             {"", 500.0F, 0.02F});
+    add_flat(model, corner + Vector3d(kWidth, front, top - kRise), -across, {0, 0, kRise}, riser,
+             {"", 400.0F, 0.02F});
+    side_patches[0].push_back(add_flat(model, corner + Vector3d(0, front, 0), {0, back - front, 0},
+                                       {0, 0, top}, riser, {"none", 300.0F, 0.04F}));
+    side_patches[1].push_back(add_flat(model, corner + across + Vector3d(0, back, 0),
+                                       {0, front - back, 0}, {0, 0, top}, riser,
+                                       {"none", 300.0F, 0.04F}));
+    for (std::size_t side = 0; side < 2; ++side) {
+      const Vector3d foot = corner + static_cast<double>(side) * across;
+      outline[side].push_back(foot + Vector3d(0, front, top));
+      outline[side].push_back(foot + Vector3d(0, front, top - kRise));
+    }
+  }
+  for (std::size_t side = 0; side < 2; ++side) {
+    TruePlane plane;
+    plane.label = static_cast<int>(model.planes.size()) + 1;
+    plane.plane_class = "vertical";
+    plane.normal = side == 0 ? Vector3d(-Vector3d::UnitX()) : Vector3d(Vector3d::UnitX());
+    plane.offset = -plane.normal.dot(outline[side][0]);
+    plane.polygon = outline[side];
+    // The outline goes up at the wall and down the steps: counter-clockwise seen from -x.
+    if (side == 1) std::reverse(plane.polygon.begin(), plane.polygon.end());
+    for (const int patch : side_patches[side]) {
+      Patch& strip = model.patches[static_cast<std::size_t>(patch)];
+      strip.label = plane.label;
+      plane.area += static_cast<double>(strip.width_m) * strip.height_m;
+    }
+    model.planes.push_back(plane);
+  }
+}
+
 /// Parallel planes at small distances.
 Scene stair(std::uint64_t seed) {
   Scene scene;
@@ -337,20 +399,10 @@ Scene stair(std::uint64_t seed) {
   add_window(model, shell, kWallY1, 1.0, 1.2, 1.4, 1.3, Color(3.0F, 3.1F, 3.3F), seed + 3);
   const Texture tread = furniture_wood(WoodKind::kOak, s + 4);
   const Texture riser = plaster(paint(0xE6E0D4), s + 5);
-  constexpr int kSteps = 6;
-  for (int i = 0; i < kSteps; ++i) {
-    BoxTextures faces = BoxTextures::all(riser);
-    faces.top = tread;
-    // Each step reaches back to the wall, so that only its front and the strip of its top are seen.
-    const double depth = 0.29 * (kSteps - i);
-    add_box(model, {{1.8, 0.5 * depth + 0.3, 0.175 * i}, kPi}, {1.6, depth, 0.175}, faces,
-            {"", 500.0F, 0.02F});
-  }
-  add_box(model, {{1.8, 0.15, 0}, kPi}, {1.6, 0.30, 0.175 * kSteps}, BoxTextures::all(riser),
-          {"", 400.0F, 0.03F});
+  add_steps(model, {1.0, 0.0, 0.0}, 6, tread, riser);
   add_plant(model, {{0.5, 2.4, 0}, 0}, 0.32, 13, 0.36, seed + 6);
-  add_toy_block(model, {{1.35, 1.85, 0.175}, 0.4}, 0.14, seed + 7);
-  add_book_stack(model, {{2.2, 1.25, 0.525}, 0.4}, 3, seed + 8);
+  add_toy_block(model, {{1.35, 1.88, 0.175}, 0.4}, 0.14, seed + 7);
+  add_book_stack(model, {{2.2, 1.31, 0.525}, 0.4}, 3, seed + 8);
   scene.path = CameraPath(orbit({1.8, 1.2, 0},
                                 {{{62, 2.1, 1.6, 0.55}},
                                  {{80, 2.0, 1.5, 0.55}},

@@ -30,8 +30,8 @@ TEST(Composite, IsExactForEveryAlphaAndValue) {
   cv::Mat frame(256, 256, CV_8UC3);
   for (int a = 0; a < 256; ++a) {
     for (int v = 0; v < 256; ++v) {
-      layer.rgba.at<cv::Vec4b>(a, v) = cv::Vec4b(static_cast<uchar>(a / 2), 0, static_cast<uchar>(a),
-                                                 static_cast<uchar>(a));
+      layer.rgba.at<cv::Vec4b>(a, v) =
+          cv::Vec4b(static_cast<uchar>(a / 2), 0, static_cast<uchar>(a), static_cast<uchar>(a));
       frame.at<cv::Vec3b>(a, v) = cv::Vec3b(static_cast<uchar>(v), static_cast<uchar>(v), 0);
     }
   }
@@ -70,18 +70,21 @@ TEST(LensWarp, DrawsWhereTheCameraSees) {
   const slam::Camera& layer_camera = warp.layer_camera();
   EXPECT_FALSE(layer_camera.has_distortion());
   // Discs drawn at the pinhole's pixels must arrive at the distorted pixels of the same points.
-  for (const Eigen::Vector3d& point : {Eigen::Vector3d(0.45, 0.3, 1.0), Eigen::Vector3d(-0.5, -0.35, 1.0),
-                                       Eigen::Vector3d(0.0, 0.1, 1.0)}) {
+  for (const Eigen::Vector3d& point :
+       {Eigen::Vector3d(0.45, 0.3, 1.0), Eigen::Vector3d(-0.5, -0.35, 1.0),
+        Eigen::Vector3d(0.0, 0.1, 1.0)}) {
     const Eigen::Vector2d drawn = layer_camera.project(point);
     ObjectLayer layer;
     layer.rgba = cv::Mat::zeros(layer_camera.height, layer_camera.width, CV_8UC4);
     layer.depth = cv::Mat::zeros(layer.rgba.size(), CV_32FC1);
     constexpr int kShift = 6;  // sub-pixel positions of cv::circle
-    cv::circle(layer.rgba, {static_cast<int>(std::lround(drawn.x() * (1 << kShift))),
-                            static_cast<int>(std::lround(drawn.y() * (1 << kShift)))},
+    cv::circle(layer.rgba,
+               {static_cast<int>(std::lround(drawn.x() * (1 << kShift))),
+                static_cast<int>(std::lround(drawn.y() * (1 << kShift)))},
                6 << kShift, cv::Scalar(255, 255, 255, 255), cv::FILLED, cv::LINE_AA, kShift);
-    layer.bounds = cv::Rect(static_cast<int>(drawn.x()) - 10, static_cast<int>(drawn.y()) - 10, 21, 21) &
-                   cv::Rect(cv::Point(), layer.rgba.size());
+    layer.bounds =
+        cv::Rect(static_cast<int>(drawn.x()) - 10, static_cast<int>(drawn.y()) - 10, 21, 21) &
+        cv::Rect(cv::Point(), layer.rgba.size());
     const ObjectLayer raw = warp.to_raw(layer);
     ASSERT_EQ(raw.rgba.size(), cv::Size(camera.width, camera.height));
     cv::Mat alpha;
@@ -145,14 +148,16 @@ TEST(Grain, StaysOnObjectsAndIsTheSameEveryTime) {
   const cv::Mat first = noisy(5);
   EXPECT_EQ(cv::norm(first, noisy(5), cv::NORM_INF), 0.0);
   EXPECT_GT(cv::norm(first, noisy(6), cv::NORM_INF), 0.0);
-  EXPECT_EQ(cv::norm(first(cv::Rect(20, 10, 200, 20)), clean.rgba(cv::Rect(20, 10, 200, 20)), cv::NORM_INF), 0.0);
+  EXPECT_EQ(cv::norm(first(cv::Rect(20, 10, 200, 20)), clean.rgba(cv::Rect(20, 10, 200, 20)),
+                     cv::NORM_INF),
+            0.0);
   const cv::Rect object(20, 30, 200, 130);
   cv::Mat red;
   cv::extractChannel(first(object), red, 0);
   cv::Scalar mean;
   cv::Scalar deviation;
   cv::meanStdDev(red, mean, deviation);
-  EXPECT_NEAR(mean[0], 100.0, 0.3);      // 4 / sqrt(26,000) is far below
+  EXPECT_NEAR(mean[0], 100.0, 0.3);  // 4 / sqrt(26,000) is far below
   EXPECT_NEAR(deviation[0], 4.0, 0.3);
 }
 

@@ -27,12 +27,15 @@ SceneLight estimate_from(const cv::Mat& image) {
   return estimator.estimate(kUp);
 }
 
-TEST(Light, UniformPictureGivesItsBrightnessOverTheAlbedo) {
+TEST(Light, UniformPictureGivesItsBrightnessOverTheAlbedos) {
   const cv::Mat grey(480, 640, CV_8UC3, cv::Scalar(128, 128, 128));
   const SceneLight light = estimate_from(grey);
   const Eigen::Vector3d facing_up = on_surface(light, kUp);
-  const double expected = srgb_to_linear(128) / LightOptions{}.mean_albedo;
-  for (int channel = 0; channel < 3; ++channel) EXPECT_NEAR(facing_up[channel], expected, 0.05 * expected);
+  const LightOptions options;
+  const double expected =
+      srgb_to_linear(128) * 0.5 * (1.0 / options.mean_albedo + 1.0 / options.bright_albedo);
+  for (int channel = 0; channel < 3; ++channel)
+    EXPECT_NEAR(facing_up[channel], expected, 0.05 * expected);
   // Light comes from above, to the upper left by custom.
   EXPECT_GT(light.sun_direction.dot(kUp), 0.7);
   EXPECT_LT(light.sun_direction.x(), 0.0);
@@ -44,7 +47,8 @@ TEST(Light, FollowsBrightnessAndHalfTheTint) {
   const SceneLight dark = estimate_from(cv::Mat(480, 640, CV_8UC3, cv::Scalar(60, 60, 60)));
   const SceneLight bright = estimate_from(cv::Mat(480, 640, CV_8UC3, cv::Scalar(160, 160, 160)));
   EXPECT_GT(on_surface(bright, kUp).x(), 2.0 * on_surface(dark, kUp).x());
-  const SceneLight warm = estimate_from(cv::Mat(480, 640, CV_8UC3, cv::Scalar(90, 120, 150)));  // BGR
+  const SceneLight warm =
+      estimate_from(cv::Mat(480, 640, CV_8UC3, cv::Scalar(90, 120, 150)));  // BGR
   EXPECT_GT(warm.mean.x(), 1.05 * warm.mean.z());
   const double scene_ratio = srgb_to_linear(150) / srgb_to_linear(90);
   EXPECT_LT(warm.mean.x() / warm.mean.z(), scene_ratio);
@@ -77,7 +81,8 @@ TEST(Light, HarmonicsReproduceTheSurroundings) {
   light.gradient = {0.1, -0.2, 0.3};
   const auto sh = light.ambient_sh(2.0);
   const Eigen::Vector3d d = Eigen::Vector3d(1, 2, -2) / 3.0;
-  const Eigen::Vector3d radiance = 0.28209479 * sh[0] + 0.48860251 * (d.y() * sh[1] + d.z() * sh[2] + d.x() * sh[3]);
+  const Eigen::Vector3d radiance =
+      0.28209479 * sh[0] + 0.48860251 * (d.y() * sh[1] + d.z() * sh[2] + d.x() * sh[3]);
   EXPECT_LT((radiance - 2.0 * light.mean * (1.0 + light.gradient.dot(d))).norm(), 1e-6);
 }
 
@@ -93,8 +98,9 @@ TEST(Blur, MeasuresEachDirection) {
   cv::Mat scene(480, 640, CV_8UC1, cv::Scalar(60));
   cv::RNG rng(11);
   for (int i = 0; i < 60; ++i) {
-    cv::rectangle(scene, {rng.uniform(0, 600), rng.uniform(0, 440), rng.uniform(20, 80), rng.uniform(20, 80)},
-                  cv::Scalar(rng.uniform(20, 235)), cv::FILLED);
+    cv::rectangle(
+        scene, {rng.uniform(0, 600), rng.uniform(0, 440), rng.uniform(20, 80), rng.uniform(20, 80)},
+        cv::Scalar(rng.uniform(20, 235)), cv::FILLED);
   }
   const CameraBlur sharp = estimate_blur(scene);
   EXPECT_LT(sharp.sigma_x_px, kVisibleBlur);
@@ -103,7 +109,8 @@ TEST(Blur, MeasuresEachDirection) {
     cv::Mat moved;
     cv::GaussianBlur(scene, moved, cv::Size(15, 1), sigma, 0.1);
     const CameraBlur blur = estimate_blur(moved);
-    // Quantile of edges next to other edges and 8-bit rounding: a fifth is what the eye cannot tell.
+    // Quantile of edges next to other edges and 8-bit rounding: a fifth is what the eye cannot
+    // tell.
     EXPECT_NEAR(blur.sigma_x_px, sigma, 0.2 * sigma + 0.1);
     EXPECT_LT(blur.sigma_y_px, 0.5);
   }
@@ -134,7 +141,9 @@ TEST(Exposure, FollowsTheFrameNotItsContent) {
   for (int i = 0; i < 400; ++i) {
     const Eigen::Vector2d pixel(rng.uniform(5, 635), rng.uniform(5, 475));
     const double linear = rng.uniform(0.05, 0.4);
-    const auto byte = [](double v) { return std::round(255.0 * (1.055 * std::pow(v, 1.0 / 2.4) - 0.055)); };
+    const auto byte = [](double v) {
+      return std::round(255.0 * (1.055 * std::pow(v, 1.0 / 2.4) - 0.055));
+    };
     MapPoint point;
     point.position = 2.0 * world.camera.ray(pixel);
     point.color_rgb.setConstant(static_cast<float>(byte(linear)));

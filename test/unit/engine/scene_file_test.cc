@@ -58,7 +58,8 @@ TEST_F(SceneFileTest, ReadsEveryKey) {
       "objects:\n"
       "  - model: ../models/a.glb\n    place: {frame: 120, pixel: [320, 300]}\n    size: 0.3\n"
       "    yaw: 30\n    face: keep\n    animation: Walk\n"
-      "  - {model: ../models/a.glb, place: {plane: largest-vertical, at: [0.25, 0.75]}, animation: 2}\n"
+      "  - {model: ../models/a.glb, place: {plane: largest-vertical, at: [0.25, 0.75]}, animation: "
+      "2}\n"
       "  - {model: ../models/a.glb, place: {plane: 7}}\n"
       "  - {model: ../models/a.glb, place: {position: [1, 2, 3], normal: [0, -2, 0]}}\n"
       "scale: {edge: {frame: 4, from: [1, 2], to: [3, 4], length: 0.21}}\n");
@@ -108,13 +109,15 @@ TEST_F(SceneFileTest, WrongValuesAreNamedWithTheirLine) {
   EXPECT_EQ(error_of(object(kTap) + "    size: -1\n"), "s.yaml:4: 'size' must be positive");
   EXPECT_EQ(error_of(object(kTap) + "    size: .nan\n"), "s.yaml:4: 'size' must be a number");
   EXPECT_EQ(error_of(object(kTap) + "    face: left\n"), "s.yaml:4: 'face' must be camera or keep");
-  EXPECT_EQ(error_of(object(kTap) + "shadows: maybe\n"), "s.yaml:4: 'shadows' must be true or false");
+  EXPECT_EQ(error_of(object(kTap) + "shadows: maybe\n"),
+            "s.yaml:4: 'shadows' must be true or false");
   EXPECT_EQ(error_of(object(kTap) + "occlusion: some\n"),
             "s.yaml:4: 'occlusion' must be none, planes, depth or both");
   EXPECT_EQ(error_of(object("    place: {frame: 3, pixel: [1]}\n")),
             "s.yaml:3: 'pixel' must be a list of 2 numbers");
-  EXPECT_EQ(error_of(object("    place: {plane: ceiling}\n")),
-            "s.yaml:3: 'plane' must be an id, largest-horizontal, largest-vertical, floor or nearest");
+  EXPECT_EQ(
+      error_of(object("    place: {plane: ceiling}\n")),
+      "s.yaml:3: 'plane' must be an id, largest-horizontal, largest-vertical, floor or nearest");
   EXPECT_EQ(error_of(object("    place: {plane: 1, at: [0.5, 1.5]}\n")),
             "s.yaml:3: 'at' is a fraction: both numbers must lie between 0 and 1");
 }
@@ -122,7 +125,8 @@ TEST_F(SceneFileTest, WrongValuesAreNamedWithTheirLine) {
 TEST_F(SceneFileTest, MissingPartsAreNamed) {
   EXPECT_EQ(error_of("objects:\n  - model: nowhere.glb\n" + std::string(kTap)),
             "s.yaml:2: model 'nowhere.glb' not found");
-  EXPECT_EQ(error_of("shadows: true\n"), "s.yaml:1: 'objects' must be a list of at least one object");
+  EXPECT_EQ(error_of("shadows: true\n"),
+            "s.yaml:1: 'objects' must be a list of at least one object");
   EXPECT_EQ(error_of(object("    size: 1\n")), "s.yaml:2: object without 'place'");
   EXPECT_EQ(error_of(object("    place: {frame: 3}\n")),
             "s.yaml:3: 'place' needs both 'frame' and 'pixel'");

@@ -77,7 +77,8 @@ TEST(HitTest, SaysWhatIsThereInstead) {
             "s.yaml:3: there is no plane at pixel (320, 10) of frame 10; planes in that frame: "
             "0 (floor), 1 (horizontal)");
   EXPECT_EQ(tap_error(world, 11, {320, 10}),
-            "s.yaml:3: frame 11 has no camera pose (lost: too few matches); the nearest frame with one is 10");
+            "s.yaml:3: frame 11 has no camera pose (lost: too few matches); the nearest frame with "
+            "one is 10");
   EXPECT_EQ(tap_error(world, 99, {320, 10}), "s.yaml:3: frame 99 is not there (frames: 10 to 12)");
   EXPECT_EQ(tap_error(world, 10, {640, 10}),
             "s.yaml:3: pixel (640, 10) of frame 10 lies outside the picture (640x480)");

@@ -39,10 +39,12 @@ TEST(Placement, StandsOnThePlaneFacingTheCamera) {
   object.size = 0.4;
   const Eigen::Affine3d world_from_model = placed_pose(world, object);
   // The base's centre is on the tapped point, the top 0.4 m above it along the plane's normal.
-  EXPECT_LT((world_from_model * Eigen::Vector3d(0.1, 0.1, 0.0) - Eigen::Vector3d(0.2, 0.5, 1.6)).norm(),
-            kExact);
-  EXPECT_LT((world_from_model * Eigen::Vector3d(0.1, 0.9, 0.0) - Eigen::Vector3d(0.2, 0.1, 1.6)).norm(),
-            kExact);
+  EXPECT_LT(
+      (world_from_model * Eigen::Vector3d(0.1, 0.1, 0.0) - Eigen::Vector3d(0.2, 0.5, 1.6)).norm(),
+      kExact);
+  EXPECT_LT(
+      (world_from_model * Eigen::Vector3d(0.1, 0.9, 0.0) - Eigen::Vector3d(0.2, 0.1, 1.6)).norm(),
+      kExact);
   // All four base corners lie on the plane.
   for (const double x : {-0.1, 0.3}) {
     for (const double z : {-0.1, 0.1}) {
@@ -80,12 +82,15 @@ TEST(Placement, HangsOnWallsUpright) {
   EXPECT_TRUE(placed.hangs);
   const Eigen::Affine3d world_from_model = *placed.world_from_model(world.planes);
   // The centre of the back touches the wall's middle, front to the room, top up.
-  EXPECT_LT((world_from_model * Eigen::Vector3d(0.1, 0.5, -0.1) - Eigen::Vector3d(0.0, 0.05, 4.0)).norm(),
-            kExact);
-  EXPECT_LT((world_from_model.linear() * Eigen::Vector3d::UnitZ() - Eigen::Vector3d(0, 0, -1)).norm(),
-            kExact);
-  EXPECT_LT((world_from_model.linear() * Eigen::Vector3d::UnitY() - Eigen::Vector3d(0, -1, 0)).norm(),
-            kExact);
+  EXPECT_LT(
+      (world_from_model * Eigen::Vector3d(0.1, 0.5, -0.1) - Eigen::Vector3d(0.0, 0.05, 4.0)).norm(),
+      kExact);
+  EXPECT_LT(
+      (world_from_model.linear() * Eigen::Vector3d::UnitZ() - Eigen::Vector3d(0, 0, -1)).norm(),
+      kExact);
+  EXPECT_LT(
+      (world_from_model.linear() * Eigen::Vector3d::UnitY() - Eigen::Vector3d(0, -1, 0)).norm(),
+      kExact);
 }
 
 TEST(Placement, SizesCountInMetresOrMedianDepths) {
@@ -94,7 +99,7 @@ TEST(Placement, SizesCountInMetresOrMedianDepths) {
   const auto scale = [&](const SizeUnit& unit) {
     return place_object(world, object, kBox, unit, false).scale;
   };
-  EXPECT_NEAR(scale(kMetres), 1.0, kExact);               // its own size
+  EXPECT_NEAR(scale(kMetres), 1.0, kExact);                  // its own size
   EXPECT_NEAR(scale({0.0, 2.0}), 0.25 * 2.0 / 0.8, kExact);  // a quarter of the median depth
   object.size = 0.4;
   EXPECT_NEAR(scale(kMetres), 0.5, kExact);
@@ -132,7 +137,9 @@ TEST(Placement, MergesReExpressAnchors) {
   const Anchor moved = move_anchor(placed.anchor, plane_by_id(world, 1), other);
   EXPECT_EQ(moved.plane_id, 9);
   EXPECT_LT((moved.world_from_anchor({other})->matrix() -
-             placed.anchor.world_from_anchor(world.planes)->matrix()).norm(), kExact);
+             placed.anchor.world_from_anchor(world.planes)->matrix())
+                .norm(),
+            kExact);
 }
 
 TEST(Placement, RulesFindTheirPlanes) {

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// The table world seen by cameras that look down by `pitch_deg` and roll by +-`roll_deg`, described in
-/// a world that is turned arbitrarily; returns it and the true up.
+/// The table world seen by cameras that look down by `pitch_deg` and roll by +-`roll_deg`,
+/// described in a world that is turned arbitrarily; returns it and the true up.
 Reconstruction turned_world(double pitch_deg, double roll_deg, Eigen::Vector3d& up) {
   Reconstruction world = table_world();
   const Eigen::Matrix3d turn =
@@ -24,7 +24,8 @@ Reconstruction turned_world(double pitch_deg, double roll_deg, Eigen::Vector3d& 
     slam::Pose pose = slam::Pose::Identity();
     pose.rotate(Eigen::AngleAxisd((i - 10) * 0.05, Eigen::Vector3d::UnitY()));
     pose.rotate(Eigen::AngleAxisd(-pitch_deg * kDegree, Eigen::Vector3d::UnitX()));
-    pose.rotate(Eigen::AngleAxisd((i % 2 == 0 ? roll_deg : -roll_deg) * kDegree, Eigen::Vector3d::UnitZ()));
+    pose.rotate(
+        Eigen::AngleAxisd((i % 2 == 0 ? roll_deg : -roll_deg) * kDegree, Eigen::Vector3d::UnitZ()));
     frame.world_from_cam = slam::Pose(turn) * pose;
     world.frames.push_back(frame);
   }

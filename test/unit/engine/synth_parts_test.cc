@@ -45,7 +45,7 @@ TEST(RoomModel, FacesPointOutwardsAndCarryTheirPlane) {
     EXPECT_GT(turn.dot(plane.normal), 0.0);
   }
   EXPECT_EQ(model.planes.back().plane_class, "horizontal");
-  EXPECT_NEAR(model.planes.back().area, 0.24, 1e-12);
+  EXPECT_NEAR(model.planes.back().area, 0.24, 1e-6);  // corners lie on whole micrometres
 }
 
 TEST(RoomModel, SmallFacesHaveNoLabel) {
@@ -92,8 +92,9 @@ TEST(LightBake, ALampLightsByTheInverseSquareAndTheBoxThrowsAShadow) {
   // Under the lamp 1 / 1^2; one metre aside cos(45 deg) / 2. The grid blurs by some percent.
   EXPECT_NEAR(light_at(-1.0F, 0.0F), 1.0F, 0.03F);
   EXPECT_NEAR(light_at(-1.0F, 1.0F), 0.3536F, 0.01F);
-  EXPECT_EQ(light_at(0.6F, 0.0F), 0.0F);  // behind the box: the lamp's ray ends at x = 0.8
-  EXPECT_GT(light_at(1.5F, 0.0F), 0.05F);
+  EXPECT_EQ(light_at(0.6F, 0.0F), 0.0F);  // behind the box
+  // Its shadow ends at x = 1.6; beyond, (1 / 2.97) / (2.8^2 + 1) at x = 1.8.
+  EXPECT_NEAR(light_at(1.8F, 0.0F), 0.0380F, 0.003F);
 }
 
 TEST(CameraPath, IsSmoothAndOfAHandsSpeed) {
@@ -125,7 +126,7 @@ TEST(CameraPath, StaysAtEyeHeightInsideTheRoomWithALevelHorizon) {
   for (double t = 0.0; t < path.duration_s(); t += 0.1) {
     const slam::Pose pose = path.world_from_cam(t);
     EXPECT_NEAR(pose.translation().z(), 1.5, 0.15);
-    EXPECT_LT(pose.linear().col(1).z(), -0.8);  // the image's down is the world's
+    EXPECT_LT(pose.linear().col(1).z(), -0.7);  // the image's down is the world's
     EXPECT_LT(std::abs(pose.linear().col(0).z()), 0.06);
   }
   const Vector3d back =
@@ -154,7 +155,7 @@ TEST(Scenes, LabelsFitIntoEightBitsAndCoverTheMainSurfaces) {
     std::set<std::string> classes;
     for (const TruePlane& plane : scene->model.planes) classes.insert(plane.plane_class);
     EXPECT_TRUE(classes.contains("floor")) << name;
-    if (name != "plane") EXPECT_TRUE(classes.contains("wall")) << name;
+    EXPECT_EQ(classes.contains("wall"), name != "plane") << name;
   }
   EXPECT_FALSE(make_scene("no such scene", 1));
 }

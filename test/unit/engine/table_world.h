@@ -7,17 +7,18 @@
 
 namespace planecast::engine {
 
-/// A hand-made reconstruction in metres: a level camera at the origin looks along z over a table top
-/// (id 1, 0.5 m below, x -0.6..0.6, z 1..2) that stands on a floor (id 0, 1.3 m below, x -3..3,
-/// z 0.5..4) in front of a wall (id 2, at z = 4, y -1.2..1.3). Up is -y. Three frames: 10 at the origin,
-/// 11 lost, 12 moved by 0.2 m to the right.
+/// A hand-made reconstruction in metres: a level camera at the origin looks along z over a table
+/// top (id 1, 0.5 m below, x -0.6..0.6, z 1..2) that stands on a floor (id 0, 1.3 m below, x -3..3,
+/// z 0.5..4) in front of a wall (id 2, at z = 4, y -1.2..1.3). Up is -y. Three frames: 10 at the
+/// origin, 11 lost, 12 moved by 0.2 m to the right.
 inline PlaneRecord make_plane(int id, const std::vector<Eigen::Vector3d>& ring,
                               const Eigen::Vector3d& normal, const Eigen::Vector3d& x_axis) {
   PlaneRecord plane;
   plane.id = id;
   plane.normal = normal;
   plane.x_axis = x_axis;
-  for (const Eigen::Vector3d& corner : ring) plane.origin += corner / static_cast<double>(ring.size());
+  for (const Eigen::Vector3d& corner : ring)
+    plane.origin += corner / static_cast<double>(ring.size());
   plane.offset = -normal.dot(plane.origin);
   plane.polygon = ring;
   plane.inliers = 200;
@@ -30,7 +31,8 @@ inline PlaneRecord make_plane(int id, const std::vector<Eigen::Vector3d>& ring,
 }
 
 /// Counter-clockwise seen from above (-y).
-inline std::vector<Eigen::Vector3d> level_ring(double y, double x0, double x1, double z0, double z1) {
+inline std::vector<Eigen::Vector3d> level_ring(double y, double x0, double x1, double z0,
+                                               double z1) {
   return {{x0, y, z0}, {x1, y, z0}, {x1, y, z1}, {x0, y, z1}};
 }
 
@@ -60,11 +62,10 @@ inline Reconstruction table_world() {
   }
   const Eigen::Vector3d up = -Eigen::Vector3d::UnitY();
   const Eigen::Vector3d right = Eigen::Vector3d::UnitX();
-  world.planes = {
-      make_plane(0, level_ring(1.3, -3, 3, 0.5, 4), up, right),
-      make_plane(1, level_ring(0.5, -0.6, 0.6, 1, 2), up, right),
-      make_plane(2, {{-3, 1.3, 4}, {3, 1.3, 4}, {3, -1.2, 4}, {-3, -1.2, 4}}, -Eigen::Vector3d::UnitZ(),
-                 right)};
+  world.planes = {make_plane(0, level_ring(1.3, -3, 3, 0.5, 4), up, right),
+                  make_plane(1, level_ring(0.5, -0.6, 0.6, 1, 2), up, right),
+                  make_plane(2, {{-3, 1.3, 4}, {3, 1.3, 4}, {3, -1.2, 4}, {-3, -1.2, 4}},
+                             -Eigen::Vector3d::UnitZ(), right)};
   world.up = up;
   world.up_confidence = 0.8;
   world.planes[0].plane_class = "floor";

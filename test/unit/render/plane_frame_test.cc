@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "render/passes/catcher_plan.h"
 #include "render/passes/shadow_map.h"
 #include "render/passes/view.h"
 #include "render_test_tools.h"
@@ -40,6 +41,50 @@ TEST(DistanceToEdge, IsExactAndKnowsHoles) {
   EXPECT_NEAR(at_world(0.52F, 2.02F), 0.48F, 0.06F);
   EXPECT_NEAR(at_world(2.02F, 2.02F), -0.98F, 0.06F);
   EXPECT_NEAR(at_world(0.02F, 0.02F), 0.02F, 0.06F);
+}
+
+/// Corners of a cube of side 0.2 whose underside is `lift` above the plane z = 2 of the square.
+std::vector<glm::vec3> cube_points(float lift) {
+  const auto corners =
+      box_corners({{0.4F, 0.4F, 1.8F - lift}, {0.6F, 0.6F, 2.0F - lift}}, glm::mat4(1.0F));
+  return {corners.begin(), corners.end()};
+}
+
+TEST(CatcherPlan, SharesTheLightAndFindsTheSpot) {
+  const PlanePatch patch = square_with_hole();
+  Sun sun;
+  sun.direction_to_light = glm::vec3(0, 0, -1);
+  sun.radiance = glm::vec3(0.3F);
+  const Light light = Light::uniform(glm::vec3(0.1F), sun);
+  const auto plan = plan_catcher(patch, cube_points(0.0F), light, true, glm::vec3(0.0F));
+  ASSERT_TRUE(plan.has_value());
+  EXPECT_NEAR(plan->sun_share, 0.75F, 1e-4F);
+  EXPECT_NEAR(plan->farthest_gap_m, 0.2F, 1e-5F);
+  EXPECT_EQ(plan->contact_strength, 1.0F);
+  EXPECT_NEAR(plan->contact_reach_m, 0.3F, 1e-5F);
+  // 0.2 wide with 0.3 of reach around it, cut by the polygon at 0.
+  EXPECT_NEAR(plan->contact_region.size().x, 0.8F, 1e-5F);
+  EXPECT_NEAR(plan->region.size().x, 0.8F, 1e-5F);
+  EXPECT_EQ(plan->contact_side % 4, 0);
+}
+
+TEST(CatcherPlan, LeavesOutWhatCannotGetDark) {
+  const PlanePatch patch = square_with_hole();
+  Sun sun = test::no_sun();
+  sun.direction_to_light = glm::vec3(0, 0, -1);
+  const Light ambient = Light::uniform(glm::vec3(0.1F), sun);
+  const glm::vec3 eye(0.0F);
+  EXPECT_FALSE(plan_catcher(patch, {}, ambient, true, eye));
+  EXPECT_FALSE(plan_catcher(patch, cube_points(0.0F), ambient, false, {0, 0, 9}));  // from behind
+  EXPECT_FALSE(plan_catcher(patch, cube_points(-1.0F), ambient, false, eye));  // under the plane
+  EXPECT_FALSE(plan_catcher(patch, cube_points(1.0F), ambient, false, eye));   // high above it
+  EXPECT_FALSE(plan_catcher(patch, cube_points(0.0F), Light(), true, eye));    // no light to lose
+  sun.radiance = glm::vec3(1.0F);
+  sun.direction_to_light = glm::vec3(0, 0, 1);
+  const auto lit_from_below =
+      plan_catcher(patch, cube_points(0.0F), Light::uniform(glm::vec3(0.1F), sun), true, eye);
+  ASSERT_TRUE(lit_from_below.has_value());
+  EXPECT_FALSE(lit_from_below->sun);
 }
 
 TEST(ShadowProjection, HoldsAllPointsWithTheMarginFree) {

@@ -1,0 +1,89 @@
+#include "engine/pipeline/picture_flow.h"
+
+#include <utility>
+
+#include "engine/user_error.h"
+
+namespace planecast::engine {
+namespace {
+
+constexpr std::size_t kQueueLength = 4;  ///< frames: enough to hide jitter, little memory
+
+ReadFrame read_frame(Sequence& sequence, int index) {
+  ReadFrame result;
+  result.index = index;
+  try {
+    result.frame = sequence.read(index);
+  } catch (const UserError& error) {
+    result.error = error.what();
+  }
+  return result;
+}
+
+}  // namespace
+
+FrameReader::FrameReader(Sequence& sequence, int begin, int end, bool threaded)
+    : sequence_(sequence), next_(begin), end_(end), queue_(kQueueLength) {
+  if (threaded) thread_ = std::thread([this] { read_all(); });
+}
+
+FrameReader::~FrameReader() {
+  queue_.close();
+  if (thread_.joinable()) thread_.join();
+}
+
+std::optional<ReadFrame> FrameReader::next() {
+  if (!thread_.joinable()) {
+    if (next_ >= end_) return std::nullopt;
+    return read_frame(sequence_, next_++);
+  }
+  std::optional<ReadFrame> frame = queue_.pop();
+  if (!frame && failure_) std::rethrow_exception(failure_);
+  return frame;
+}
+
+void FrameReader::read_all() {
+  try {
+    for (; next_ < end_; ++next_) {
+      if (!queue_.push(read_frame(sequence_, next_))) break;
+    }
+  } catch (...) {
+    failure_ = std::current_exception();
+  }
+  queue_.close();
+}
+
+PictureWriter::PictureWriter(std::function<void(const Picture&)> write, bool threaded)
+    : write_(std::move(write)), queue_(kQueueLength) {
+  if (threaded) thread_ = std::thread([this] { write_all(); });
+}
+
+PictureWriter::~PictureWriter() {
+  queue_.close();
+  if (thread_.joinable()) thread_.join();
+}
+
+void PictureWriter::put(Picture picture) {
+  if (!thread_.joinable()) {
+    write_(picture);
+  } else if (!queue_.push(std::move(picture))) {
+    finish();
+  }
+}
+
+void PictureWriter::finish() {
+  queue_.close();
+  if (thread_.joinable()) thread_.join();
+  if (failure_) std::rethrow_exception(failure_);
+}
+
+void PictureWriter::write_all() {
+  try {
+    while (const std::optional<Picture> picture = queue_.pop()) write_(*picture);
+  } catch (...) {
+    failure_ = std::current_exception();
+    queue_.close();
+  }
+}
+
+}  // namespace planecast::engine
