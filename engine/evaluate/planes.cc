@@ -108,8 +108,12 @@ std::vector<TruePlaneRow> describe_truth(const AlignedMap& map,
     row.required = required[t] != 0;
     const auto match = std::find(truth_of.begin(), truth_of.end(), static_cast<int>(t));
     row.matched = match != truth_of.end();
-    const int e = row.matched ? static_cast<int>(match - truth_of.begin())
-                              : nearest_estimate(relations, t, min_overlap);
+    int e = -1;
+    if (row.matched) {
+      e = static_cast<int>(match - truth_of.begin());
+    } else if (row.required) {
+      e = nearest_estimate(relations, t, min_overlap);
+    }
     if (e >= 0) {
       const PlaneRelation& relation = relations[static_cast<std::size_t>(e)][t];
       row.estimate_id = map.planes[static_cast<std::size_t>(e)].id;

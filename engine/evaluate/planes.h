@@ -47,8 +47,8 @@ struct PlaneScore {
       0;  ///< true planes left over whose place is taken by an estimate matched elsewhere
 };
 
-/// One true plane and its counterpart: the match at the first tolerance, else the estimate nearest
-/// to it that overlaps it, whichever way it faces.
+/// One true plane and its counterpart: the match at the first tolerance, else, of a plane that must
+/// be found, the estimate nearest to it that overlaps it, whichever way it faces.
 struct TruePlaneRow {
   int truth_id = 0;
   int label = 0;

@@ -24,8 +24,8 @@ struct FrameRate {
 };
 FrameRate exact_frame_rate(double fps);
 
-/// H.264 MP4 by libav and x264, the same bytes for the same frames on every processor (one encoder thread
-/// whatever the program uses, cpu-independent, bitexact, no creation time).
+/// H.264 MP4 by libav and x264, the same bytes for the same frames on every processor (one encoder
+/// thread whatever the program uses, cpu-independent, bitexact, no creation time).
 ///
 /// Frames are encoded in closed segments, each by a fresh encoder, in `segments/NNNNNN.mp4` beside
 /// the video, renamed when complete, so a killed run leaves playable segments; finish() joins them

@@ -66,8 +66,8 @@ void VideoWriter::Segment::open_encoder(const VideoOptions& options) {
   AVDictionary* settings = nullptr;
   av_dict_set(&settings, "preset", options.preset.c_str(), 0);
   av_dict_set_int(&settings, "crf", options.crf, 0);
-  // Else x264's macroblock tree is computed by instructions that round differently from processor to
-  // processor, and with AVX-512 from run to run.
+  // Else x264's macroblock tree is computed by instructions that round differently from processor
+  // to processor, and with AVX-512 from run to run.
   av_dict_set(&settings, "x264-params", "cpu-independent=1", 0);
   const int opened = avcodec_open2(encoder_.get(), codec, &settings);
   av_dict_free(&settings);
