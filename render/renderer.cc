@@ -91,13 +91,14 @@ struct Renderer::Impl {
   }
 
   Layer draw_layer(const LayerScene& scene, const Camera& camera);
-  void draw_layer_color(const LayerScene& scene, const Camera& camera,
-                        const CatcherInput& catching, const ShadingInput& shading, Layer& layer);
+  void draw_layer_color(const LayerScene& scene, const Camera& camera, const CatcherInput& catching,
+                        const ShadingInput& shading, Layer& layer);
   OpaqueImages draw_opaque(const OpaqueScene& scene, const Camera& camera);
   void draw_shadow_map(const ShadowProjection& projection, const std::vector<DrawItem>& items,
                        const Sun& sun, bool with_surfaces, std::uint64_t signature);
   GLuint upload_occluder_depth(const LayerScene& scene, const Camera& camera);
   void begin_opaque_state() const;
+  void check_errors() const;
 
   RendererOptions options;
   std::unique_ptr<GlContext> context;
@@ -121,6 +122,11 @@ void Renderer::Impl::begin_opaque_state() const {
   gl.DepthMask(GL_TRUE);
   gl.Disable(GL_CULL_FACE);
   gl.Disable(GL_BLEND);
+}
+
+void Renderer::Impl::check_errors() const {
+  const GLenum error = gl.GetError();
+  if (error != GL_NO_ERROR) throw std::runtime_error("OpenGL error " + std::to_string(error));
 }
 
 void Renderer::Impl::draw_shadow_map(const ShadowProjection& projection,
@@ -163,9 +169,9 @@ Layer Renderer::Impl::draw_layer(const LayerScene& scene, const Camera& camera) 
   const std::uint64_t signature = caster_signature(models, sun);
   const ShadowMap* shadow = nullptr;
   if (casts(sun)) {
-    draw_shadow_map(fit_shadow(sun.direction_to_light, points, shadow_map.size(),
-                               shadow_margin_texels(sun)),
-                    items, sun, false, signature);
+    draw_shadow_map(
+        fit_shadow(sun.direction_to_light, points, shadow_map.size(), shadow_margin_texels(sun)),
+        items, sun, false, signature);
     shadow = &shadow_map;
   }
   const CatcherInput catching{&scene, &camera, &items, &points, shadow, signature};
@@ -198,6 +204,7 @@ Layer Renderer::Impl::draw_layer(const LayerScene& scene, const Camera& camera) 
   begin_opaque_state();
   model_passes.draw_geometry(items, shading);
   geometry->read_depth(layer.bounds, layer.depth);
+  check_errors();
   return layer;
 }
 
@@ -226,9 +233,9 @@ OpaqueImages Renderer::Impl::draw_opaque(const OpaqueScene& scene, const Camera&
     ContentHash signature;
     signature.add(caster_signature(models, sun));
     signature.add(surfaces.signature());
-    draw_shadow_map(fit_shadow(sun.direction_to_light, points, shadow_map.size(),
-                               shadow_margin_texels(sun)),
-                    items, sun, true, signature.value());
+    draw_shadow_map(
+        fit_shadow(sun.direction_to_light, points, shadow_map.size(), shadow_margin_texels(sun)),
+        items, sun, true, signature.value());
     shadow = &shadow_map;
   }
 
@@ -255,6 +262,7 @@ OpaqueImages Renderer::Impl::draw_opaque(const OpaqueScene& scene, const Camera&
   model_passes.draw_geometry(items, shading);
   geometry->read_depth(whole, images.depth);
   geometry->read_labels(whole, images.labels);
+  check_errors();
   return images;
 }
 

@@ -14,9 +14,9 @@ struct RendererOptions {
   std::string shader_dir;  ///< assets/shaders
   int msaa_samples = 4;    ///< 4 or 1
   int shadow_map_size = 1024;
-  /// Keeps Mesa from using instructions (fused multiply-add) that round differently on processors that
-  /// lack them: the same bytes on any x86-64, at 1.25 to 1.6 times the time. Holds for the whole
-  /// process from its first context on; for golden tests.
+  /// Keeps Mesa from using instructions (fused multiply-add) that round differently on processors
+  /// that lack them: the same bytes on any x86-64, at 1.25 to 1.6 times the time. Holds for the
+  /// whole process from its first context on; for golden tests.
   bool portable_floats = false;
 };
 

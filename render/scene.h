@@ -27,8 +27,8 @@ struct Sun {
   glm::vec3 radiance = glm::vec3(2.0F);  ///< linear RGB irradiance on a facing surface / pi
   bool casts_shadow = true;
   float softness = 1.0F;  ///< radius of the shadow's filter in shadow-map texels, at least
-  /// Half the angle the light is wide: shadows on catchers blur with the distance of what casts them.
-  /// The sun's is 0.0046; lamps and windows are wider.
+  /// Half the angle the light is wide: shadows on catchers blur with the distance of what casts
+  /// them. The sun's is 0.0046; lamps and windows are wider.
   float angular_radius_rad = 0.05F;
 };
 
@@ -82,9 +82,9 @@ struct Layer {
   } bounds;  ///< outside it all is transparent
 };
 
-/// A surface of an opaque scene such as the synthetic generator's: own triangles, one material. Lit by
-/// its normals from either side; casts a shadow only where its normal faces the sun, so that the walls
-/// of a closed room let the sun in.
+/// A surface of an opaque scene such as the synthetic generator's: own triangles, one material. Lit
+/// by its normals from either side; casts a shadow only where its normal faces the sun, so that the
+/// walls of a closed room let the sun in.
 struct SurfaceMesh {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;

@@ -12,6 +12,7 @@ uniform vec3 u_to_light;
 uniform vec3 u_sun_radiance;
 
 #include "color.glsl"
+#include "stretched.glsl"
 #ifdef SHADOWS
 #include "shadow.glsl"
 #endif
@@ -35,7 +36,7 @@ float small_specular(vec3 normal, vec3 to_eye) {
 void main() {
   vec3 albedo = u_color_factor;
 #ifdef TEXTURE
-  albedo *= texture(u_base_color, v_uv).rgb;
+  albedo *= sample_stretched(u_base_color, v_uv).rgb;
 #endif
   vec3 normal = normalize(v_normal);
   vec3 color = albedo * v_ambient;

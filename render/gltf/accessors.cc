@@ -135,9 +135,8 @@ std::vector<std::uint32_t> sparse_targets(const tinygltf::Model& file,
     throw ImportError(what + " has wrong sparse indices");
   }
   const std::size_t size = component_size(indices.componentType);
-  const ElementView view = view_elements(file, indices.bufferView,
-                                         static_cast<std::size_t>(indices.byteOffset), count, size,
-                                         what);
+  const ElementView view = view_elements(
+      file, indices.bufferView, static_cast<std::size_t>(indices.byteOffset), count, size, what);
   std::vector<std::uint32_t> targets(count);
   for (std::size_t i = 0; i < count; ++i) {
     targets[i] = static_cast<std::uint32_t>(
@@ -169,10 +168,9 @@ std::vector<T> read_all(const tinygltf::Model& file, int index, int components) 
   if (accessor.sparse.isSparse) {
     const auto targets = sparse_targets(file, accessor, what);
     if (accessor.sparse.values.byteOffset < 0) throw ImportError(what + " has wrong sparse values");
-    const ElementView values =
-        view_elements(file, accessor.sparse.values.bufferView,
-                      static_cast<std::size_t>(accessor.sparse.values.byteOffset), targets.size(),
-                      element, what);
+    const ElementView values = view_elements(
+        file, accessor.sparse.values.bufferView,
+        static_cast<std::size_t>(accessor.sparse.values.byteOffset), targets.size(), element, what);
     copy_elements(values, accessor, width, targets, out);
   }
   return out;
@@ -180,7 +178,9 @@ std::vector<T> read_all(const tinygltf::Model& file, int index, int components) 
 
 }  // namespace
 
-std::size_t AccessorReader::count(int accessor) const { return accessor_at(*file_, accessor).count; }
+std::size_t AccessorReader::count(int accessor) const {
+  return accessor_at(*file_, accessor).count;
+}
 
 int AccessorReader::components(int accessor) const {
   return tinygltf::GetNumComponentsInType(

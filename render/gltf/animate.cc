@@ -157,8 +157,8 @@ ModelPose evaluate_pose(const Model& model, int animation, float time_s) {
 std::vector<glm::mat4> joint_matrices(const Skin& skin, const ModelPose& pose) {
   std::vector<glm::mat4> matrices(skin.joints.size());
   for (std::size_t i = 0; i < matrices.size(); ++i) {
-    matrices[i] =
-        pose.model_from_node[static_cast<std::size_t>(skin.joints[i])] * skin.joint_from_skin_bind[i];
+    matrices[i] = pose.model_from_node[static_cast<std::size_t>(skin.joints[i])] *
+                  skin.joint_from_skin_bind[i];
   }
   return matrices;
 }
@@ -199,7 +199,8 @@ Box pose_bounds(const Model& model, const ModelPose& pose) {
     const auto i = static_cast<std::size_t>(index);
     const Node& node = model.nodes[i];
     if (node.mesh < 0) continue;
-    for (const Primitive& primitive : model.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
+    for (const Primitive& primitive :
+         model.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
       const bool skinned = node.skin >= 0 && !primitive.joints.empty();
       const glm::mat4 matrix = skinned ? glm::mat4(1.0F) : pose.model_from_node[i];
       if (!deforms(primitive, node)) {
@@ -228,7 +229,8 @@ std::vector<std::string> animation_names(const Model& model) {
 }
 
 float animation_duration_s(const Model& model, int animation) {
-  const bool exists = animation >= 0 && static_cast<std::size_t>(animation) < model.animations.size();
+  const bool exists =
+      animation >= 0 && static_cast<std::size_t>(animation) < model.animations.size();
   return exists ? model.animations[static_cast<std::size_t>(animation)].duration_s : 0.0F;
 }
 

@@ -9,8 +9,8 @@ namespace planecast::render {
 
 /// A model at one moment.
 struct ModelPose {
-  std::vector<glm::mat4> model_from_node;          ///< by node; those outside the scene are identity
-  std::vector<std::vector<float>> morph_weights;   ///< by node
+  std::vector<glm::mat4> model_from_node;         ///< by node; those outside the scene are identity
+  std::vector<std::vector<float>> morph_weights;  ///< by node
 };
 
 /// Rest pose for animation -1 or one that does not exist. Times beyond the duration are looped;
@@ -20,8 +20,8 @@ ModelPose evaluate_pose(const Model& model, int animation, float time_s);
 /// Model-from-bind for each joint of a skin: the mesh's own node does not count (3.7.3.3).
 std::vector<glm::mat4> joint_matrices(const Skin& skin, const ModelPose& pose);
 
-/// Morph targets, then skinning by `joints` (empty: none; the result stays in the mesh's frame). Only
-/// for primitives that have either.
+/// Morph targets, then skinning by `joints` (empty: none; the result stays in the mesh's frame).
+/// Only for primitives that have either.
 std::vector<ShapeVertex> deform(const Primitive& primitive, const std::vector<float>& weights,
                                 const std::vector<glm::mat4>& joints);
 

@@ -31,7 +31,8 @@ std::vector<std::string> lines(const std::string& text) {
   while (begin < text.size()) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     std::string line = text.substr(begin, end - begin);
-    std::replace_if(line.begin(), line.end(), [](char c) { return c == '\r' || c == '\t'; }, ' ');
+    std::replace_if(
+        line.begin(), line.end(), [](char c) { return c == '\r' || c == '\t'; }, ' ');
     if (line.find_first_not_of(' ') != std::string::npos) out.push_back(line);
     begin = end + 1;
   }
@@ -59,8 +60,7 @@ std::string reason(const std::string& message) {
   const std::string& first = all.front();
   if (!first.starts_with("[json.exception")) return first;
   const std::size_t bracket = first.find("] ");
-  return "is not valid JSON: " +
-         (bracket == std::string::npos ? first : first.substr(bracket + 2));
+  return "is not valid JSON: " + (bracket == std::string::npos ? first : first.substr(bracket + 2));
 }
 
 bool is_binary(const std::string& path) {
@@ -101,7 +101,8 @@ void check_joints(const Model& model) {
   for (const Node& node : model.nodes) {
     if (node.mesh < 0 || node.skin < 0) continue;
     const std::size_t joints = model.skins[static_cast<std::size_t>(node.skin)].joints.size();
-    for (const Primitive& primitive : model.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
+    for (const Primitive& primitive :
+         model.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
       for (const auto& vertex : primitive.joints) {
         if (*std::max_element(vertex.begin(), vertex.end()) >= joints) {
           throw ImportError("a vertex uses a joint that its skin does not have");

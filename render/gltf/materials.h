@@ -8,8 +8,9 @@
 
 namespace planecast::render {
 
-/// Images as 8 bits, textures, and materials with one default material after the file's own. A texture
-/// that cannot be used is left out with a warning. Throws ImportError for indices out of range.
+/// Images as 8 bits, textures, and materials with one default material after the file's own. A
+/// texture that cannot be used is left out with a warning. Throws ImportError for indices out of
+/// range.
 void import_materials(const tinygltf::Model& file, Model& model,
                       std::vector<std::string>& warnings);
 

@@ -5,8 +5,8 @@
 
 namespace planecast::render {
 
-/// Nodes, the default scene's order, skins and animations; meshes and materials must be there. Throws
-/// ImportError for cycles, second parents and indices out of range.
+/// Nodes, the default scene's order, skins and animations; meshes and materials must be there.
+/// Throws ImportError for cycles, second parents and indices out of range.
 void import_nodes(const tinygltf::Model& file, Model& model);
 void import_skins(const tinygltf::Model& file, Model& model);
 void import_animations(const tinygltf::Model& file, Model& model);

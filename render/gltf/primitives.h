@@ -9,9 +9,10 @@
 
 namespace planecast::render {
 
-/// One primitive as indexed triangles with normals, and tangents where its material has a normal map.
-/// Points, lines and primitives without positions or triangles: nothing, with a warning. Throws
-/// ImportError for a file that contradicts itself. `materials` ends with the default material.
+/// One primitive as indexed triangles with normals, and tangents where its material has a normal
+/// map. Points, lines and primitives without positions or triangles: nothing, with a warning.
+/// Throws ImportError for a file that contradicts itself. `materials` ends with the default
+/// material.
 std::optional<Primitive> import_primitive(const tinygltf::Model& file,
                                           const tinygltf::Primitive& from,
                                           const std::vector<Material>& materials,

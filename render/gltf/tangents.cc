@@ -38,8 +38,8 @@ TriangleTangent triangle_tangent(const Primitive& primitive, const std::uint32_t
   TriangleTangent tangent;
   tangent.valid = area != 0.0F && glm::length(direction) > 0.0F && std::isfinite(area);
   if (tangent.valid) tangent.direction = glm::normalize(direction);
-  // cross(normal, tangent) * w is the normal map's "up", against glTF's v, which runs down the image:
-  // on an unmirrored front (u, v) turns against the winding.
+  // cross(normal, tangent) * w is the normal map's "up", against glTF's v, which runs down the
+  // image: on an unmirrored front (u, v) turns against the winding.
   tangent.handedness = area < 0.0F ? 1.0F : -1.0F;
   return tangent;
 }

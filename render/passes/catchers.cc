@@ -12,10 +12,13 @@ namespace planecast::render {
 namespace {
 
 constexpr int kMaskSide = 160;
+/// Texels of a contact map for an object as wide as high, and at most; multiples of the 4 x 4
+/// pattern.
 constexpr int kContactSide = 144;
+constexpr int kLargestContactSide = 288;
 constexpr int kPenumbraSide = 512;
-/// How far a contact shadow reaches, in heights of the object: there a wall hides 1 / (1 + 1.5^2) of a
-/// direction's light, a column much less, and the rest fades out.
+/// How far a contact shadow reaches, in heights of the object: there a wall hides 1 / (1 + 1.5^2)
+/// of a direction's light, a column much less, and the rest fades out.
 constexpr float kContactReach = 1.5F;
 /// Below this cosine the sun grazes the plane and its shadow is endless.
 constexpr float kSmallestCosine = 0.03F;
@@ -54,19 +57,31 @@ Silhouette silhouette_of(const std::vector<glm::vec3>& points, const PlaneFrame&
   return found;
 }
 
-/// Objects far off a plane, measured in their own width, leave hardly a trace on it: faded out, so that
-/// it need not be computed.
+/// Objects far off a plane, measured in their own width, leave hardly a trace on it: faded out, so
+/// that it need not be computed.
 float contact_strength(float lift) {
   constexpr float kFull = 0.25F;
   constexpr float kNone = 0.5F;
   return std::clamp((kNone - lift) / (kNone - kFull), 0.0F, 1.0F);
 }
 
+/// Objects spread over a plane need more texels than one.
+int contact_side(const PlaneRegion& region, float reach_m) {
+  const glm::vec2 size = region.size();
+  constexpr float kRegionOfOne = (1.0F + 2.0F * kContactReach) / kContactReach;
+  const float ones = std::max(size.x, size.y) / (kRegionOfOne * reach_m);
+  const float side =
+      std::clamp(static_cast<float>(kContactSide) * ones, static_cast<float>(kContactSide),
+                 static_cast<float>(kLargestContactSide));
+  return static_cast<int>(side) / 4 * 4;
+}
+
 /// Where the sun's shadow of the points can fall.
 PlaneRegion sun_region(const std::vector<glm::vec3>& points, const PlaneFrame& frame,
                        const glm::vec3& to_light, float angular_radius) {
   const float cosine = glm::dot(frame.normal, to_light);
-  const glm::vec2 slope = glm::vec2(glm::dot(frame.x, to_light), glm::dot(frame.y, to_light)) / cosine;
+  const glm::vec2 slope =
+      glm::vec2(glm::dot(frame.x, to_light), glm::dot(frame.y, to_light)) / cosine;
   PlaneRegion region = nothing();
   for (const glm::vec3& point : points) {
     const float height = std::max(frame.height(point), 0.0F);
@@ -124,12 +139,7 @@ TextureHandle make_penumbra_texture(const Gl& gl) {
 }  // namespace
 
 CatcherPass::CatcherPass(const Gl& gl, const ModelPasses& models)
-    : gl_(&gl),
-      models_(&models),
-      no_vertices_(gl),
-      framebuffer_(gl),
-      heights_(make_target(gl, GL_RG32F, kContactSide, kContactSide)),
-      unblurred_contact_(make_target(gl, GL_R32F, kContactSide, kContactSide)) {}
+    : gl_(&gl), models_(&models), no_vertices_(gl), framebuffer_(gl) {}
 
 void CatcherPass::prepare(ShaderLibrary& shaders, const CatcherInput& input) {
   prepared_.clear();
@@ -171,8 +181,8 @@ void CatcherPass::prepare_patch(ShaderLibrary& shaders, const CatcherInput& inpu
   }
   PlaneRegion touched = contact;
   if (prepared.sun) {
-    touched = united(touched, sun_region(*input.caster_points, frame, to_light,
-                                         light.sun.angular_radius_rad));
+    touched = united(
+        touched, sun_region(*input.caster_points, frame, to_light, light.sun.angular_radius_rad));
   }
   prepared.region = intersection(outer, touched);
   if (prepared.region.empty()) return;
@@ -239,7 +249,18 @@ void CatcherPass::make_penumbra(ShaderLibrary& shaders, const CatcherInput& inpu
 void CatcherPass::make_contact(ShaderLibrary& shaders, const CatcherInput& input,
                                const PlaneFrame& frame, const PlaneRegion& region, float reach_m,
                                Maps& maps) {
-  begin_map(heights_.id(), kContactSide);
+  const int side = contact_side(region, reach_m);
+  if (contact_side_ != side) {
+    contact_side_ = side;
+    heights_ = make_target(*gl_, GL_RG32F, side, side);
+    unblurred_contact_ = make_target(*gl_, GL_R32F, side, side);
+  }
+  if (maps.contact_side != side) {
+    maps.contact_side = side;
+    maps.contact = make_target(*gl_, GL_R32F, side, side);
+    set_filter(*gl_, maps.contact, GL_LINEAR);
+  }
+  begin_map(heights_.id(), side);
   constexpr std::array<float, 4> kNothingThere = {-1e9F, -1e9F, 0.0F, 0.0F};
   gl_->ClearNamedFramebufferfv(framebuffer_.id(), GL_COLOR, 0, kNothingThere.data());
   gl_->Enable(GL_BLEND);
@@ -248,12 +269,8 @@ void CatcherPass::make_contact(ShaderLibrary& shaders, const CatcherInput& input
   models_->draw_heights(*input.items, clip_from_world_over(frame, region), frame.equation());
   gl_->BlendEquation(GL_FUNC_ADD);
 
-  if (!maps.contact) {
-    maps.contact = make_target(*gl_, GL_R32F, kContactSide, kContactSide);
-    set_filter(*gl_, maps.contact, GL_LINEAR);
-  }
   const Program& program = shaders.get("full_screen.vert", "contact.frag");
-  begin_map(unblurred_contact_.id(), kContactSide);
+  begin_map(unblurred_contact_.id(), side);
   program.use();
   gl_->BindTextureUnit(kUnitHeights, heights_.id());
   program.set("u_heights", static_cast<int>(kUnitHeights));
@@ -263,7 +280,7 @@ void CatcherPass::make_contact(ShaderLibrary& shaders, const CatcherInput& input
   gl_->DrawArrays(GL_TRIANGLES, 0, 3);
 
   const Program& blur = shaders.get("full_screen.vert", "contact_blur.frag");
-  begin_map(maps.contact.id(), kContactSide);
+  begin_map(maps.contact.id(), side);
   blur.use();
   gl_->BindTextureUnit(kUnitHeights, unblurred_contact_.id());
   blur.set("u_heights", static_cast<int>(kUnitHeights));

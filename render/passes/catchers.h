@@ -23,9 +23,9 @@ struct CatcherInput {
   std::uint64_t casters = 0;                              ///< changes when casters or the sun do
 };
 
-/// Shadows on the planes of the recorded world. Two parts, each made once for casters and light that
-/// stand still: the sun's shadow with a penumbra growing with the distance of what casts it, and the
-/// contact shadow, the surroundings' light that the objects keep from the plane.
+/// Shadows on the planes of the recorded world. Two parts, each made once for casters and light
+/// that stand still: the sun's shadow with a penumbra growing with the distance of what casts it,
+/// and the contact shadow, the surroundings' light that the objects keep from the plane.
 class CatcherPass {
  public:
   explicit CatcherPass(const Gl& gl, const ModelPasses& models);
@@ -50,6 +50,7 @@ class CatcherPass {
     std::uint64_t casters = 0;
     TextureHandle penumbra;
     TextureHandle contact;
+    int contact_side = 0;
   };
   struct Prepared {
     PlaneFrame frame;
@@ -78,6 +79,7 @@ class CatcherPass {
   FramebufferHandle framebuffer_;
   TextureHandle heights_;
   TextureHandle unblurred_contact_;
+  int contact_side_ = 0;
   std::map<std::uint64_t, Mask> masks_;
   std::map<std::size_t, Maps> maps_;  ///< by the patch's place in the scene
   std::size_t patch_index_ = 0;

@@ -1,5 +1,7 @@
 #include "render/passes/models.h"
 
+#include <cmath>
+
 #include "render/gl/image_texture.h"
 #include "render/gltf/animate.h"
 #include "render/passes/content_hash.h"
@@ -17,9 +19,11 @@ Box shape_box(const std::vector<ShapeVertex>& shape) {
   return box;
 }
 
-/// Anisotropic reads cost a software rasteriser more than all of the shading; only colours, where blur
-/// is seen, get them.
-constexpr float kColorAnisotropy = 4.0F;
+bool finite(const glm::mat4& matrix) {
+  float sum = 0.0F;
+  for (int column = 0; column < 4; ++column) sum += glm::dot(matrix[column], glm::vec4(1.0F));
+  return std::isfinite(sum);
+}
 
 }  // namespace
 
@@ -29,12 +33,15 @@ void DrawItem::draw(const Gl& gl) const {
 }
 
 const std::vector<DrawItem>& ModelSet::pose(const std::vector<Instance>& instances) {
-  std::erase_if(models_, [](const auto& item) { return item.second.model.expired(); });
+  const auto gone =
+      std::erase_if(models_, [](const auto& item) { return item.second.model.expired(); });
+  // Deformed shapes refer to meshes by address, and a new model may get the address of a gone one.
+  if (gone > 0) deformed_.clear();
   items_.clear();
   deformed_used_ = 0;
   ContentHash signature;
   for (const Instance& instance : instances) {
-    if (instance.model == nullptr) continue;
+    if (instance.model == nullptr || !finite(instance.world_from_model)) continue;
     signature.add(upload(instance.model).serial);
     signature.add(instance.world_from_model);
     signature.add(instance.animation);
@@ -118,7 +125,7 @@ GLuint ModelSet::texture(const DrawItem& item, const TextureSlot& slot, bool srg
   if (known != item.gpu->textures.end()) return known->second.id();
   const ModelTexture& texture = item.model->textures[static_cast<std::size_t>(slot.texture)];
   const TextureOptions options{srgb, texture.wrap_s, texture.wrap_t, texture.min_filter,
-                               texture.mag_filter, srgb ? kColorAnisotropy : 1.0F};
+                               texture.mag_filter};
   TextureHandle handle =
       upload_image(*gl_, item.model->images[static_cast<std::size_t>(texture.image)], options);
   const GLuint id = handle.id();

@@ -13,11 +13,12 @@
 
 namespace planecast::render {
 
-/// A glTF model on the GPU. Textures follow on first use, since how one is decoded depends on its use.
+/// A glTF model on the GPU. Textures follow on first use, since how one is decoded depends on its
+/// use.
 struct GpuModel {
   std::weak_ptr<const Model> model;
   std::uint64_t serial = 0;  ///< of the upload: an address may come back with another model
-  std::vector<std::vector<MeshBuffers>> meshes;             ///< by mesh and primitive
+  std::vector<std::vector<MeshBuffers>> meshes;            ///< by mesh and primitive
   std::map<std::pair<int, bool>, TextureHandle> textures;  ///< by texture and whether it is sRGB
 };
 
@@ -39,7 +40,8 @@ class ModelSet {
  public:
   explicit ModelSet(const Gl& gl) : gl_(&gl) {}
 
-  /// The items are valid until the next call. Instances without a model are passed over.
+  /// The items are valid until the next call. Instances without a model or
+  /// with a pose that is not a number are passed over.
   const std::vector<DrawItem>& pose(const std::vector<Instance>& instances);
   /// The texture of a slot that has one.
   GLuint texture(const DrawItem& item, const TextureSlot& slot, bool srgb) const;

@@ -8,9 +8,10 @@
 
 namespace planecast::render {
 
-/// Writes the depth of flat polygons, concave and with holes, and nothing else. Filled by the even-odd
-/// rule in the stencil buffer, so that the measured outlines need neither triangulation nor to be
-/// simple. Pushed back by a small share of the depth, so that what stands on a plane is not cut by it.
+/// Writes the depth of flat polygons, concave and with holes, and nothing else. Filled by the
+/// even-odd rule in the stencil buffer, so that the measured outlines need neither triangulation
+/// nor to be simple. Pushed back by a small share of the depth, so that what stands on a plane is
+/// not cut by it.
 class OccluderPass {
  public:
   explicit OccluderPass(const Gl& gl);

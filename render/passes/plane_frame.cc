@@ -16,8 +16,7 @@ std::vector<Edge> all_edges(const PlanePatch& patch, const PlaneFrame& frame) {
   std::vector<Edge> edges;
   const auto add_ring = [&](const std::vector<glm::vec3>& ring) {
     for (std::size_t i = 0; i < ring.size(); ++i) {
-      edges.push_back(
-          {frame.coordinates(ring[i]), frame.coordinates(ring[(i + 1) % ring.size()])});
+      edges.push_back({frame.coordinates(ring[i]), frame.coordinates(ring[(i + 1) % ring.size()])});
     }
   };
   add_ring(patch.outer);
@@ -97,8 +96,9 @@ ImageF distance_to_edge(const PlanePatch& patch, const PlaneFrame& frame, const 
   const std::vector<Edge> edges = all_edges(patch, frame);
   for (int row = 0; row < distance.height; ++row) {
     for (int column = 0; column < distance.width; ++column) {
-      const glm::vec2 share((static_cast<float>(column) + 0.5F) / static_cast<float>(distance.width),
-                            (static_cast<float>(row) + 0.5F) / static_cast<float>(distance.height));
+      const glm::vec2 share(
+          (static_cast<float>(column) + 0.5F) / static_cast<float>(distance.width),
+          (static_cast<float>(row) + 0.5F) / static_cast<float>(distance.height));
       const glm::vec2 p = region.min + share * size;
       float nearest2 = std::numeric_limits<float>::max();
       bool inside = false;

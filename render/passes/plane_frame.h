@@ -45,8 +45,9 @@ bool drawable(const PlanePatch& patch);
 PlaneFrame plane_frame(const PlanePatch& patch);
 PlaneRegion outer_region(const PlanePatch& patch, const PlaneFrame& frame);
 
-/// Distance to the nearest edge in metres, positive inside (even-odd over all rings), on a grid over
-/// `region` whose cell centres are spread as a texture's texels; at most `longest_side` cells a side.
+/// Distance to the nearest edge in metres, positive inside (even-odd over all rings), on a grid
+/// over `region` whose cell centres are spread as a texture's texels; at most `longest_side` cells
+/// a side.
 ImageF distance_to_edge(const PlanePatch& patch, const PlaneFrame& frame, const PlaneRegion& region,
                         int longest_side);
 

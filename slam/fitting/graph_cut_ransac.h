@@ -8,7 +8,7 @@
 
 #include "slam/fitting/graph_cut.h"
 #include "slam/fitting/neighbourhood.h"
-#include "slam/fitting/random.h"
+#include "slam/geometry/random.h"
 
 namespace planecast::slam {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "slam/fitting/random.h"
+#include "slam/geometry/random.h"
 #include "slam/geometry/two_view.h"
 
 namespace planecast::slam {

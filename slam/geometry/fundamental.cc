@@ -168,7 +168,7 @@ std::optional<FundamentalResult> find_fundamental(const std::vector<PointPair>& 
   };
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     std::array<int, kSampleSize> sample;
-    random.draw_distinct(static_cast<int>(pairs.size()), sample);
+    random.distinct(kSampleSize, static_cast<int>(pairs.size()), sample.data());
     bool improved = keep_if_better(eight_point.fit(sample));
     for (int refit = 0; improved && refit < kLocalRefits; ++refit) {
       scorer.mark_inliers(best.cur_F_ref, inlier);

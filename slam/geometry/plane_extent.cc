@@ -14,8 +14,9 @@ namespace {
 using Ring = std::vector<Eigen::Vector2d>;
 
 constexpr double kCellsPerSpacing = 4.0;
-/// Half the linking distance, in spacings: two discs of it meet where points are connected.
-constexpr double kReach = 1.25;
+/// Radius of the disc that closes gaps, in spacings. Of evenly strewn points hardly a void is
+/// larger.
+constexpr double kReach = 1.2;
 /// How far the outline lies outside the outermost points, in spacings.
 constexpr double kPadding = 0.3;
 /// Smallest hole that is kept, side in spacings.
@@ -119,7 +120,7 @@ PlaneExtent plane_extent(const Plane& plane, const std::vector<Eigen::Vector3d>&
                          double spacing) {
   PlaneExtent extent;
   if (points.size() < 3) return extent;
-  if (!(spacing > 0.0)) spacing = median_spacing(points);
+  if (!(spacing > 0.0)) spacing = typical_spacing(points);
   if (!(spacing > 0.0)) return extent;
   const Ring flat = to_plane(plane, points, 2.0 * kReach * spacing);
   if (flat.size() < 3) return extent;

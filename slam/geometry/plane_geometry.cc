@@ -92,8 +92,8 @@ bool contains_point(const std::vector<Eigen::Vector2d>& outer,
 }
 
 double linking_distance(const std::vector<Eigen::Vector3d>& points) {
-  constexpr double kLinkPerSpacing = 2.5;
-  return kLinkPerSpacing * median_spacing(points);
+  constexpr double kLinkPerSpacing = 2.0;
+  return kLinkPerSpacing * typical_spacing(points);
 }
 
 }  // namespace planecast::slam

@@ -52,7 +52,7 @@ struct PlaneExtent {
   double area = 0.0;  ///< square map units, without the holes
 };
 
-/// Distance within which points of one plane count as connected: 2.5 times their median spacing, at
+/// Distance within which points of one plane count as connected: twice their typical spacing, at
 /// which evenly strewn points hang together and far strays do not. 0 for fewer than 4 points.
 double linking_distance(const std::vector<Eigen::Vector3d>& points);
 

@@ -152,7 +152,7 @@ std::optional<PnpResult> solve_pnp(const Camera& camera,
   int iterations = options.iterations;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     std::array<int, kSampleSize> sample;
-    random.draw_distinct(problem.size(), sample);
+    random.distinct(kSampleSize, problem.size(), sample.data());
     for (const Pose& pose : problem.solve_minimal(sample)) {
       if (!keep_if_better(pose) || best.num_inliers <= kSampleSize) continue;
       keep_if_better(problem.refine(best.cam_from_world, best.inlier));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <tuple>
 
 namespace planecast::slam {
 
@@ -22,6 +23,44 @@ double third_nearest_squared(const std::vector<Eigen::Vector3d>& points, std::si
     if (best[1] < best[0]) std::swap(best[1], best[0]);
   }
   return best[2];
+}
+
+double quantile(std::vector<double>& values, double share) {
+  const auto place =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+/// Diagonal of the box that holds the middle nine tenths of the points along each axis.
+double extent_of(const std::vector<Eigen::Vector3d>& points) {
+  Eigen::Vector3d size;
+  std::vector<double> values(points.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < points.size(); ++i) values[i] = points[i][axis];
+    const double high = quantile(values, 0.95);
+    size[axis] = high - quantile(values, 0.05);
+  }
+  return size.norm();
+}
+
+/// One point per occupied cell, the first.
+std::vector<Eigen::Vector3d> thinned(const std::vector<Eigen::Vector3d>& points, double cell) {
+  if (!(cell > 0.0)) return {};
+  std::vector<std::tuple<long, long, long, std::size_t>> cells;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d at = points[i] / cell;
+    cells.emplace_back(std::lround(at.x()), std::lround(at.y()), std::lround(at.z()), i);
+  }
+  std::sort(cells.begin(), cells.end());
+  const auto same_cell = [](const auto& a, const auto& b) {
+    return std::get<0>(a) == std::get<0>(b) && std::get<1>(a) == std::get<1>(b) &&
+           std::get<2>(a) == std::get<2>(b);
+  };
+  cells.erase(std::unique(cells.begin(), cells.end(), same_cell), cells.end());
+  std::vector<Eigen::Vector3d> result;
+  for (const auto& cell_of_point : cells) result.push_back(points[std::get<3>(cell_of_point)]);
+  return result;
 }
 
 int find_root(std::vector<int>& parent, int i) {
@@ -73,17 +112,19 @@ std::vector<int> number_by_size(std::vector<int>& parent) {
 
 }  // namespace
 
-double median_spacing(const std::vector<Eigen::Vector3d>& points) {
+double typical_spacing(const std::vector<Eigen::Vector3d>& all) {
   constexpr std::size_t kMostQueries = 200;
+  constexpr double kQuantile = 0.85;
+  constexpr double kCellsPerExtent = 40.0;
+  if (all.size() < 4) return 0.0;
+  const std::vector<Eigen::Vector3d> points = thinned(all, extent_of(all) / kCellsPerExtent);
   if (points.size() < 4) return 0.0;
   const std::size_t step = (points.size() + kMostQueries - 1) / kMostQueries;
   std::vector<double> squared;
   for (std::size_t i = 0; i < points.size(); i += step) {
     squared.push_back(third_nearest_squared(points, i));
   }
-  const auto middle = squared.begin() + static_cast<std::ptrdiff_t>(squared.size() / 2);
-  std::nth_element(squared.begin(), middle, squared.end());
-  return std::sqrt(*middle);
+  return std::sqrt(quantile(squared, kQuantile));
 }
 
 std::vector<int> cluster_points(const std::vector<Eigen::Vector3d>& points, double link) {

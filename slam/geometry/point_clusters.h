@@ -5,10 +5,11 @@
 
 namespace planecast::slam {
 
-/// Median distance of a point to its third nearest other point, over at most 200 evenly chosen
-/// points; 0 for fewer than 4 points. For points strewn evenly over an area with density rho it is
-/// 0.94 / sqrt(rho).
-double median_spacing(const std::vector<Eigen::Vector3d>& points);
+/// Spacing of points on a surface: the 85th percentile, over at most 200 evenly chosen points, of
+/// the distance to the third nearest. Points are first thinned to one per cell of a fortieth of
+/// their extent, so that crowds of features on a few things do not hide the sparse rest. About 1.2
+/// / sqrt(rho) for points strewn with density rho; 0 for fewer than 4 points.
+double typical_spacing(const std::vector<Eigen::Vector3d>& points);
 
 /// Single-linkage clusters: points connected by steps shorter than `link`. The cluster of each
 /// point; cluster 0 is the largest, ties by lowest point.

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <numeric>
 
-#include "slam/fitting/random.h"
+#include "slam/geometry/random.h"
 #include "slam/stages/plane_steps.h"
 
 namespace planecast::slam {
@@ -18,6 +18,8 @@ constexpr double kSubsetShare = 0.6;
 constexpr int kMostPoints = 400;
 /// Growth of the score that is worth a new equation.
 constexpr double kBetter = 1.001;
+/// Distance, in bands, beyond which support is let go.
+constexpr double kFarBands = 1.5;
 /// Landmarks of a plane in a keyframe for it to count as seen there.
 constexpr int kSeenLandmarks = 3;
 
@@ -89,6 +91,26 @@ bool reestimate(Plane& plane, const PlaneSupport& support, const PlaneContext& c
   return true;
 }
 
+/// Lets go what the new equation does not explain: landmarks in view are left to the next culling,
+/// those out of view would stay for ever.
+void release_far_support(Map& map, Plane& plane, const PlaneSupport& support,
+                         const PlaneContext& context) {
+  const std::size_t landmarks = support.landmarks.size();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < support.points.positions.size(); ++i) {
+    const double distance = std::abs(plane.signed_distance(support.points.positions[i]));
+    const bool far = distance > kFarBands * support.points.band[i] * context.scale.eps_d;
+    if (i < landmarks) {
+      if (far) map.landmarks.at(support.landmarks[i]).plane = kNone;
+    } else if (!far) {
+      plane.depth_points[kept] = plane.depth_points[i - landmarks];
+      plane.depth_anchors[kept++] = plane.depth_anchors[i - landmarks];
+    }
+  }
+  plane.depth_points.resize(kept);
+  plane.depth_anchors.resize(kept);
+}
+
 /// Planes with at least kSeenLandmarks landmarks or any depth point in the keyframe.
 std::vector<char> seen_planes(const Map& map, KeyframeId keyframe) {
   std::vector<int> count(static_cast<std::size_t>(map.planes.next_id()), 0);
@@ -140,12 +162,10 @@ int reestimate_planes(Map& map, KeyframeId keyframe, const PlaneContext& context
   const std::vector<char> seen = seen_planes(map, keyframe);
   int changed = 0;
   for (Plane& plane : map.planes) {
-    const PlaneSupport& own = support[plane.id];
-    if (seen[plane.id]) {
-      const std::uint64_t task = static_cast<std::uint64_t>(keyframe) * 4096 + plane.id;
-      changed += reestimate(plane, own, context, mix_seed(context.options.seed, task));
-    }
-    update_figures(plane, own, context);
+    if (!seen[plane.id]) continue;
+    const std::uint64_t task = static_cast<std::uint64_t>(keyframe) * 4096 + plane.id;
+    changed += reestimate(plane, support[plane.id], context, mix_seed(context.options.seed, task));
+    release_far_support(map, plane, support[plane.id], context);
   }
   return changed;
 }

@@ -154,7 +154,9 @@ TEST(Scenes, LabelsFitIntoEightBitsAndCoverTheMainSurfaces) {
     std::set<std::string> classes;
     for (const TruePlane& plane : scene->model.planes) classes.insert(plane.plane_class);
     EXPECT_TRUE(classes.contains("floor")) << name;
-    if (name != "plane") EXPECT_TRUE(classes.contains("wall")) << name;
+    if (name != "plane") {
+      EXPECT_TRUE(classes.contains("wall")) << name;
+    }
   }
   EXPECT_FALSE(make_scene("no such scene", 1));
 }

@@ -48,9 +48,10 @@ TEST(Animate, RestPoseChainsNodes) {
 
 TEST(Animate, LinearTranslationMovesTheSubtreeAndLoops) {
   Model model = two_nodes();
-  add_channel(model, {0, ChannelPath::kTranslation, Interpolation::kLinear, {0.5F, 1.5F},
-                      {0, 0, 0, 4, 0, 0}, 3});
-  expect_near(origin_of(model, 1, 0.0F), {0, 2, 0});   // before the first key
+  add_channel(
+      model,
+      {0, ChannelPath::kTranslation, Interpolation::kLinear, {0.5F, 1.5F}, {0, 0, 0, 4, 0, 0}, 3});
+  expect_near(origin_of(model, 1, 0.0F), {0, 2, 0});  // before the first key
   expect_near(origin_of(model, 1, 0.75F), {1, 2, 0});
   expect_near(origin_of(model, 1, 1.5F), {4, 2, 0});
   expect_near(origin_of(model, 1, 1.5F + 0.75F), {1, 2, 0});
@@ -60,8 +61,12 @@ TEST(Animate, LinearTranslationMovesTheSubtreeAndLoops) {
 
 TEST(Animate, StepHoldsItsValue) {
   Model model = two_nodes();
-  add_channel(model, {0, ChannelPath::kTranslation, Interpolation::kStep, {0, 1, 2},
-                      {0, 0, 0, 4, 0, 0, 8, 0, 0}, 3});
+  add_channel(model, {0,
+                      ChannelPath::kTranslation,
+                      Interpolation::kStep,
+                      {0, 1, 2},
+                      {0, 0, 0, 4, 0, 0, 8, 0, 0},
+                      3});
   expect_near(origin_of(model, 0, 0.99F), {0, 0, 0});
   expect_near(origin_of(model, 0, 1.0F), {4, 0, 0});
   expect_near(origin_of(model, 0, 1.99F), {4, 0, 0});
@@ -71,18 +76,25 @@ TEST(Animate, RotationTakesTheShorterWayAtEvenSpeed) {
   Model model = two_nodes();
   const float half = std::sqrt(0.5F);
   // A quarter turn about z, the end written as the opposite quaternion.
-  add_channel(model, {0, ChannelPath::kRotation, Interpolation::kLinear, {0, 1},
-                      {0, 0, 0, 1, 0, 0, -half, -half}, 4});
+  add_channel(model, {0,
+                      ChannelPath::kRotation,
+                      Interpolation::kLinear,
+                      {0, 1},
+                      {0, 0, 0, 1, 0, 0, -half, -half},
+                      4});
   const float angle = 0.25F * 1.5707963F;
-  expect_near(origin_of(model, 1, 0.25F),
-              {1 - 2 * std::sin(angle), 2 * std::cos(angle), 0});
+  expect_near(origin_of(model, 1, 0.25F), {1 - 2 * std::sin(angle), 2 * std::cos(angle), 0});
 }
 
 TEST(Animate, CubicSplineFollowsHermite) {
   Model model = two_nodes();
   // One key: in-tangent, value, out-tangent. From 0 with slope 3 to 1 with slope 0 in two seconds.
-  add_channel(model, {0, ChannelPath::kTranslation, Interpolation::kCubicSpline, {0, 2},
-                      {0, 0, 0, 0, 0, 0, 3, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0}, 3});
+  add_channel(model, {0,
+                      ChannelPath::kTranslation,
+                      Interpolation::kCubicSpline,
+                      {0, 2},
+                      {0, 0, 0, 0, 0, 0, 3, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0},
+                      3});
   // h00 = h01 = 1/2, h10 = 1/8 at the middle: 1/2 + 2 * 3 / 8.
   expect_near(origin_of(model, 0, 1.0F), {1.25F, 0, 0});
   expect_near(origin_of(model, 0, 2.0F), {1, 0, 0});
@@ -106,8 +118,7 @@ TEST(Animate, SkinFollowsItsJointsAndNotItsNode) {
   expect_near(still[0].position, {1, 2, 0});
   // The child turned by a quarter about z carries what hangs on it alone, and half of the other.
   model.nodes[1].rest.rotation = glm::angleAxis(1.5707963F, glm::vec3(0, 0, 1));
-  const auto turned =
-      deform(primitive, {}, joint_matrices(skin, evaluate_pose(model, -1, 0.0F)));
+  const auto turned = deform(primitive, {}, joint_matrices(skin, evaluate_pose(model, -1, 0.0F)));
   expect_near(turned[0].position, {1, 2, 0});  // lies in the joint
   expect_near(turned[1].position, {1 - 3, 2 + 4, 5});
   expect_near(turned[1].normal, {0, 1, 0});
@@ -132,10 +143,11 @@ TEST(Animate, MorphTargetsAddUpAndAreAnimated) {
 
 TEST(Animate, AnimatedNodeMovesOnTheScreenAsComputed) {
   Renderer renderer(test::renderer_options());
-  auto model = test::one_primitive_model(test::box_primitive(glm::vec3(0.1F)),
-                                         test::matte(glm::vec3(0.5F)));
-  add_channel(*model, {0, ChannelPath::kTranslation, Interpolation::kLinear, {0, 2},
-                       {0, 0, 0, 0.4F, 0, 0}, 3});
+  auto model =
+      test::one_primitive_model(test::box_primitive(glm::vec3(0.1F)), test::matte(glm::vec3(0.5F)));
+  add_channel(
+      *model,
+      {0, ChannelPath::kTranslation, Interpolation::kLinear, {0, 2}, {0, 0, 0, 0.4F, 0, 0}, 3});
   Instance instance;
   instance.model = model;
   instance.animation = 0;

@@ -94,7 +94,8 @@ TEST(Import, RefusesWhatContradictsItself) {
       {"\"bufferView\": 0, \"componentType\"", "\"bufferView\": 7, \"componentType\""},
       {"\"count\": 3, \"type\": \"VEC3\"", "\"count\": 300, \"type\": \"VEC3\""},
       {"\"count\": 3, \"type\": \"VEC3\"", "\"count\": 3, \"type\": \"VEC2\""},
-      {"\"count\": 3, \"type\": \"VEC3\"", "\"byteOffset\": 4000000000, \"count\": 3, \"type\": \"VEC3\""},
+      {"\"count\": 3, \"type\": \"VEC3\"",
+       "\"byteOffset\": 4000000000, \"count\": 3, \"type\": \"VEC3\""},
       {"\"componentType\": 5126", "\"componentType\": 17"},
       {"\"byteLength\": 36", "\"byteLength\": 3600"},
       {"\"byteLength\": 44", "\"byteLength\": 4400000000000"},
@@ -117,7 +118,8 @@ TEST(Import, RefusesWhatContradictsItself) {
     EXPECT_EQ(result.error.find('\n'), std::string::npos) << to;
   }
   EXPECT_EQ(import_text(with(good, "\"indices\": 1", "\"indices\": 0")).model, nullptr);
-  EXPECT_EQ(import_text(with(good, "\"mesh\": 0", "\"mesh\": 0, \"children\": [0]")).model, nullptr);
+  EXPECT_EQ(import_text(with(good, "\"mesh\": 0", "\"mesh\": 0, \"children\": [0]")).model,
+            nullptr);
   EXPECT_EQ(import_gltf("/no/such/file.glb").error, "cannot be opened");
 }
 
@@ -223,7 +225,8 @@ TEST(ImportData, EveryCoreModelIsReadAndDrawn) {
     scene.light = Light::uniform(glm::vec3(0.4F), Sun{});
     const Layer layer = renderer.draw_layer(scene, camera);
     int covered = 0;
-    for (std::size_t i = 3; i < layer.rgba.pixels.size(); i += 4) covered += layer.rgba.pixels[i] > 0;
+    for (std::size_t i = 3; i < layer.rgba.pixels.size(); i += 4)
+      covered += layer.rgba.pixels[i] > 0;
     EXPECT_GT(covered, 20) << path;
   }
 }

@@ -42,10 +42,12 @@ TEST(Opaque, MarkersLandOnTheirPixels) {
     camera.cy = 242.8F;
     OpaqueScene scene;
     scene.light = Light::uniform(glm::vec3(0.2F), no_sun());
-    const std::vector<glm::vec2> places = {{100, 100}, {320.25F, 240}, {500, 80.5F}, {40.75F, 440.25F}};
+    const std::vector<glm::vec2> places = {
+        {100, 100}, {320.25F, 240}, {500, 80.5F}, {40.75F, 440.25F}};
     for (std::size_t i = 0; i < places.size(); ++i) {
-      scene.surfaces.push_back(marker(camera, places[i].x, places[i].y, 1.0F + 0.7F * static_cast<float>(i),
-                                      12.0F, static_cast<int>(i) + 1));
+      scene.surfaces.push_back(marker(camera, places[i].x, places[i].y,
+                                      1.0F + 0.7F * static_cast<float>(i), 12.0F,
+                                      static_cast<int>(i) + 1));
     }
     const OpaqueImages images = renderer.draw_opaque(scene, camera);
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -126,8 +128,8 @@ TEST(Opaque, DirectionalAmbientFollowsTheSphericalHarmonics) {
   const float side = scene.surfaces[1].normals[0].y;
   const OpaqueImages images = renderer.draw_opaque(scene, camera);
   EXPECT_NEAR(at(images.rgb, 320, 240), test::encoded(0.4F), 1.0F);
-  EXPECT_NEAR(at(images.rgb, 320, 420),
-              test::encoded(0.4F - 0.5F * 0.488603F * 2.0F / 3.0F * side), 1.5F);
+  EXPECT_NEAR(at(images.rgb, 320, 420), test::encoded(0.4F - 0.5F * 0.488603F * 2.0F / 3.0F * side),
+              1.5F);
 }
 
 TEST(Opaque, SunCastsShadowOnlyBehindTheBlocker) {

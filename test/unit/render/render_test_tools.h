@@ -36,8 +36,8 @@ inline Sun no_sun() {
 
 /// IEC 61966-2-1, 0..255 from linear.
 inline float encoded(float linear) {
-  const float c = linear <= 0.0031308F ? 12.92F * linear
-                                       : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
+  const float c =
+      linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
   return 255.0F * c;
 }
 
@@ -75,9 +75,9 @@ inline Primitive sphere_primitive(float radius, int rings = 48) {
   };
   for (int i = 0; i < rings; ++i) {
     for (int j = 0; j < 2 * rings; ++j) {
-      sphere.indices.insert(sphere.indices.end(), {index(i, j), index(i + 1, j), index(i, j + 1),
-                                                   index(i, j + 1), index(i + 1, j),
-                                                   index(i + 1, j + 1)});
+      sphere.indices.insert(sphere.indices.end(),
+                            {index(i, j), index(i + 1, j), index(i, j + 1), index(i, j + 1),
+                             index(i + 1, j), index(i + 1, j + 1)});
     }
   }
   sphere.box = {glm::vec3(-radius), glm::vec3(radius)};
@@ -95,8 +95,8 @@ inline Primitive box_primitive(const glm::vec3& half) {
       a[(axis + 1) % 3] = 1.0F;
       const glm::vec3 b = glm::cross(normal, a);
       const auto first = static_cast<std::uint32_t>(box.shape.size());
-      for (const glm::vec2 corner : {glm::vec2(-1, -1), glm::vec2(1, -1), glm::vec2(1, 1),
-                                     glm::vec2(-1, 1)}) {
+      for (const glm::vec2 corner :
+           {glm::vec2(-1, -1), glm::vec2(1, -1), glm::vec2(1, 1), glm::vec2(-1, 1)}) {
         box.shape.push_back({half * (normal + corner.x * a + corner.y * b), normal, {}});
         box.surface.emplace_back();
       }

@@ -44,7 +44,6 @@ TEST(MaskSegmenter, GivesTheMasksOfTheFrame) {
 cv::Mat render_depth(const Camera& camera, std::mt19937& generator, cv::Mat& truth) {
   // Floor, back wall, right wall and a box's front, in the camera's own frame.
   const std::vector<PlaneEquation> room = {{{0, -1, 0}, 1.2}, {{0, 0, -1}, 3.5}, {{-1, 0, 0}, 1.4}};
-  const PlaneEquation box{{0, 0, -1}, 2.0};
   std::normal_distribution<double> normal;
   cv::Mat depth(camera.height, camera.width, CV_32F);
   truth = cv::Mat::zeros(camera.height, camera.width, CV_16U);
@@ -59,7 +58,7 @@ cv::Mat render_depth(const Camera& camera, std::mt19937& generator, cv::Mat& tru
         truth.at<ushort>(y, x) = static_cast<ushort>(i + 1);
       }
       const Vector3d on_box = 2.0 * ray;
-      if (std::abs(on_box.x() + 0.4) < 0.35 && on_box.y() > 0.3 && on_box.y() < 1.0 && 2.0 < z) {
+      if (std::abs(on_box.x() + 0.4) < 0.35 && on_box.y() > 0.3 && on_box.y() < 0.65 && 2.0 < z) {
         z = 2.0;
         truth.at<ushort>(y, x) = 4;
       }
