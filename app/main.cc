@@ -20,6 +20,15 @@ std::string one_line(std::string text) {
   return text;
 }
 
+/// CLI11 would only say that a command is missing.
+std::string describe(const CLI::ParseError& error, const CLI::App& cli, int argc, char** argv) {
+  const std::string first = argc > 1 ? argv[1] : "";
+  if (!first.empty() && first[0] != '-' && cli.get_subcommand_no_throw(first) == nullptr) {
+    return "unknown command '" + first + "'";
+  }
+  return error.what();
+}
+
 int run_action(const app::Action& action) {
   try {
     return action();
@@ -52,7 +61,8 @@ int main(int argc, char** argv) {
   } catch (const CLI::Success& help) {
     return cli.exit(help);
   } catch (const CLI::ParseError& error) {
-    std::fprintf(stderr, "planecast: %s (see planecast --help)\n", one_line(error.what()).c_str());
+    std::fprintf(stderr, "planecast: %s (see planecast --help)\n",
+                 one_line(describe(error, cli, argc, argv)).c_str());
     return app::kBadInput;
   }
   return run_action(action);

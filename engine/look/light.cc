@@ -134,6 +134,21 @@ Eigen::Vector3d LightEstimator::side_gradient(const Eigen::Vector3d& up) const {
   return gradient.norm() > kMost ? Eigen::Vector3d(kMost * gradient.normalized()) : gradient;
 }
 
+/// Where windows and lamps are seen: mean horizontal direction of what outshines every surface,
+/// longer the more of it there is, at most 1.
+Eigen::Vector3d LightEstimator::visible_sources(const Eigen::Vector3d& up) const {
+  constexpr double kOutshines = 2.5;    // times the mean: beyond white paper in an average room
+  constexpr double kNearlyWhite = 0.6;  // linear
+  constexpr double kCertainShare = 0.02;
+  const double threshold = std::max(kOutshines * luminance(robust_mean()), kNearlyWhite);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Sample& sample : samples_) {
+    if (luminance(sample.radiance) > threshold) sum += flattened(sample.direction, up);
+  }
+  sum /= kCertainShare * static_cast<double>(samples_.size());
+  return sum.norm() > 1.0 ? Eigen::Vector3d(sum.normalized()) : sum;
+}
+
 SceneLight LightEstimator::estimate(const Eigen::Vector3d& up) const {
   SceneLight light;
   light.gradient = options_.up_gradient * up;
@@ -148,7 +163,7 @@ SceneLight LightEstimator::estimate(const Eigen::Vector3d& up) const {
   // Seen by the viewer, light from the upper left and a little from behind shows shapes best; what
   // the pictures say outweighs it as soon as they say anything.
   const Eigen::Vector3d custom = -0.10 * right_sum_.normalized() - 0.06 * view_sum_.normalized();
-  const Eigen::Vector3d lateral = flattened(custom, up) + side;
+  const Eigen::Vector3d lateral = flattened(custom, up) + side + 0.5 * visible_sources(up);
   light.sun_direction =
       (up + 0.6 * std::min(1.0, 4.0 * lateral.norm()) * lateral.normalized()).normalized();
   const double facing = light.sun_direction.dot(up);

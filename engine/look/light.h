@@ -59,6 +59,7 @@ class LightEstimator {
   Eigen::Vector3d robust_mean() const;
   double brightness() const;
   Eigen::Vector3d side_gradient(const Eigen::Vector3d& up) const;
+  Eigen::Vector3d visible_sources(const Eigen::Vector3d& up) const;
 
   LightOptions options_;
   std::vector<Sample> samples_;

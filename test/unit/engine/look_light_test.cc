@@ -69,6 +69,15 @@ TEST(Light, LampsInViewDoNotBlind) {
   EXPECT_NEAR(on_surface(estimate_from(image), kUp).x(), without, 0.05 * without);
 }
 
+TEST(Light, AWindowInViewIsWhereTheLightComesFrom) {
+  cv::Mat image(480, 640, CV_8UC3, cv::Scalar(90, 90, 90));
+  cv::rectangle(image, {440, 20, 150, 140}, cv::Scalar(250, 250, 250), cv::FILLED);
+  const SceneLight light = estimate_from(image);
+  EXPECT_GT(light.sun_direction.z(), 0.1);  // ahead of the camera
+  EXPECT_GT(light.sun_direction.x(), 0.1);  // to its right
+  EXPECT_GT(light.sun_direction.dot(kUp), 0.7);
+}
+
 TEST(Light, WithoutPicturesStillShines) {
   const SceneLight light = LightEstimator().estimate(kUp);
   EXPECT_GT(on_surface(light, kUp).minCoeff(), 0.2);
