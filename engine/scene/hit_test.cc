@@ -60,6 +60,7 @@ std::optional<Hit> hit_test(const std::vector<PlaneRecord>& planes, const Ray& r
                             const HitOptions& options) {
   std::optional<Hit> inside;
   std::optional<Hit> beside;
+  double least_share = options.dilation;
   for (const PlaneRecord& plane : planes) {
     const std::optional<Hit> hit = cross(plane, ray);
     if (!hit) continue;
@@ -67,9 +68,11 @@ std::optional<Hit> hit_test(const std::vector<PlaneRecord>& planes, const Ray& r
     const Eigen::Vector2d point = (plane.world_from_plane().inverse() * hit->point).head<2>();
     if (contains(outline, point)) {
       if (!inside || hit->depth < inside->depth) inside = hit;
-    } else if (outline.outer.size() >= 3 &&
-               distance_to_edge(outline, point) <= options.dilation * hit->depth) {
-      if (!beside || hit->depth < beside->depth) beside = hit;
+    } else if (outline.outer.size() >= 3) {
+      const double share = distance_to_edge(outline, point) / hit->depth;
+      if (share > least_share) continue;
+      least_share = share;
+      beside = hit;
     }
   }
   return inside ? inside : beside;

@@ -21,9 +21,9 @@ struct Hit {
 };
 
 struct HitOptions {
-  /// A ray that meets no polygon may still meet one grown by this share of the hit's depth:
-  /// estimated outlines end at the last landmark, a little before the surface does.
-  double dilation = 0.06;
+  /// A ray that meets no polygon meets the one whose edge it passes most closely, up to this share of
+  /// the hit's depth: estimated outlines end at the last landmark, before the surface does.
+  double dilation = 0.25;
 };
 
 /// The ray of a raw input pixel.
