@@ -103,6 +103,7 @@ const SurfaceSet::Texture* SurfaceSet::texture_of(const SurfaceMesh& surface) {
   if (known != textures_.end()) return &known->second;
   TextureOptions options;
   options.srgb = true;
+  options.anisotropy = 1.0F;  // surface.frag does it, far cheaper
   Texture texture{image, upload_image(*gl_, *image, options)};
   return &textures_.emplace(image.get(), std::move(texture)).first->second;
 }

@@ -71,8 +71,8 @@ Texture door_front(const Texture& panel, double width, double height, int doors)
 /// A pillow: an ellipsoid whose sections are rounded rectangles.
 void add_cushion(RoomModel& model, const Place& place, const Vector3d& size, double squareness,
                  const Texture& texture) {
-  constexpr int kCols = 28;
-  constexpr int kRows = 14;
+  constexpr int kCols = 24;
+  constexpr int kRows = 10;
   const auto power = [squareness](double x) {
     return std::copysign(std::pow(std::abs(x), squareness), x);  // 0 at the poles: closed
   };
@@ -93,7 +93,7 @@ void add_cushion(RoomModel& model, const Place& place, const Vector3d& size, dou
 
 void add_leaf(RoomModel& model, const Vector3d& root, double azimuth, double rise, double length,
               double width, const Texture& texture) {
-  constexpr int kRows = 8;
+  constexpr int kRows = 6;
   const Vector3d out(std::cos(azimuth), std::sin(azimuth), 0.0);
   const Vector3d side(-out.y(), out.x(), 0.0);
   std::vector<Vector3d> points;
