@@ -6,23 +6,16 @@
 #include <numbers>
 #include <utility>
 
+#include "engine/sequence/synth/furniture_parts.h"
 #include "engine/sequence/synth/random.h"
 
 namespace planecast::engine::synth {
 
-namespace {
-
 using Eigen::Vector3d;
 
+namespace {
+
 constexpr double kPi = std::numbers::pi;
-
-/// Small things: never labelled, painted finely.
-FlatOptions small_things() { return {"none", 800.0F, 0.02F}; }
-FlatOptions furniture_faces() { return {"", 500.0F, 0.035F}; }
-
-Place on(const Place& place, const Vector3d& local, double turn = 0.0) {
-  return {place.to_world(local), place.yaw + turn};
-}
 
 WoodOptions wood_options(WoodKind kind) {
   WoodOptions options;
@@ -71,8 +64,8 @@ Texture door_front(const Texture& panel, double width, double height, int doors)
 /// A pillow: an ellipsoid whose sections are rounded rectangles.
 void add_cushion(RoomModel& model, const Place& place, const Vector3d& size, double squareness,
                  const Texture& texture) {
-  constexpr int kCols = 28;
-  constexpr int kRows = 14;
+  constexpr int kCols = 24;
+  constexpr int kRows = 10;
   const auto power = [squareness](double x) {
     return std::copysign(std::pow(std::abs(x), squareness), x);  // 0 at the poles: closed
   };
@@ -89,37 +82,6 @@ void add_cushion(RoomModel& model, const Place& place, const Vector3d& size, dou
   }
   add_sheet(model, kCols, kRows, points, texture, static_cast<float>(size.x() + size.y()),
             static_cast<float>(size.z() + size.y()), 300.0F);
-}
-
-void add_leaf(RoomModel& model, const Vector3d& root, double azimuth, double rise, double length,
-              double width, const Texture& texture) {
-  constexpr int kRows = 8;
-  const Vector3d out(std::cos(azimuth), std::sin(azimuth), 0.0);
-  const Vector3d side(-out.y(), out.x(), 0.0);
-  std::vector<Vector3d> points;
-  for (int j = 0; j <= kRows; ++j) {
-    const double t = static_cast<double>(j) / kRows;
-    const Vector3d spine = root + length * (t * std::cos(rise) * (0.7 + 0.3 * t)) * out +
-                           length * (t * std::sin(rise) * (1.35 - 0.75 * t)) * Vector3d::UnitZ();
-    const double half = 0.5 * width * std::sin(kPi * std::pow(0.04 + 0.95 * t, 0.8));
-    points.push_back(spine - half * side + 0.25 * half * Vector3d::UnitZ());
-    points.push_back(spine);
-    points.push_back(spine + half * side + 0.25 * half * Vector3d::UnitZ());
-  }
-  add_sheet(model, 2, kRows, points, texture, static_cast<float>(width), static_cast<float>(length),
-            500.0F);
-}
-
-Texture leaf_texture(double width, std::uint32_t seed) {
-  static constexpr std::uint32_t kGreens[] = {0x3F6B3A, 0x55803F, 0x2F5A3B};
-  const Color base = color_from_srgb(kGreens[seed % 3]);
-  const Texture flesh = mottled(base, 1.5F * base, 0.03F, seed);
-  const auto middle = static_cast<float>(0.5 * width);
-  return [=](float u, float v) -> Color {
-    const float rib = std::abs(u - middle);
-    const float vein = std::abs(std::sin(90.0F * (v - 0.8F * rib)));
-    return flesh(u, v) * (rib < 0.06F * middle ? 1.7F : 0.88F + 0.24F * vein);
-  };
 }
 
 }  // namespace
@@ -263,254 +225,6 @@ void add_sofa(RoomModel& model, const Place& place, double width, const Color& c
   const Texture accent = fabric(color_from_srgb(0xD9A441), seed + 5);
   add_cushion(model, on(place, {-0.28 * width, -0.02, 0.44}, 0.3), {0.42, 0.16, 0.36}, 0.62,
               accent);
-}
-
-void add_book_stack(RoomModel& model, const Place& place, int books, std::uint64_t seed) {
-  Random random(seed);
-  double z = 0.0;
-  double shrink = 1.0;
-  for (int i = 0; i < books; ++i) {
-    const double width = shrink * random.uniform(0.20, 0.235);
-    const double depth = 0.72 * width;
-    const double thick = random.uniform(0.016, 0.036);
-    const std::uint64_t own = random.next();
-    const Texture pages = mottled(color_from_srgb(0xEFE6D2), color_from_srgb(0xD8CDB4), 0.004F,
-                                  static_cast<std::uint32_t>(own));
-    BoxTextures faces = BoxTextures::all(pages);
-    faces.top = picture(draw_print(PrintKind::kCover, 300, 216, own), static_cast<float>(width),
-                        static_cast<float>(depth));
-    cv::Mat spine = draw_spine(72, 480, own);
-    cv::rotate(spine, spine, cv::ROTATE_90_COUNTERCLOCKWISE);
-    faces.front = picture(spine, static_cast<float>(width), static_cast<float>(thick));
-    add_box(model,
-            on(place, {random.uniform(-0.012, 0.012), random.uniform(-0.01, 0.01), z},
-               random.uniform(-0.22, 0.22)),
-            {width, depth, thick}, faces, small_things());
-    z += thick + 0.0005;
-    shrink *= 0.95;
-  }
-}
-
-double add_book_row(RoomModel& model, const Place& place, double width, double height, double depth,
-                    std::uint64_t seed) {
-  Random random(seed);
-  double x = 0.0;
-  const Texture pages = plain(color_from_srgb(0xE6DCC6));
-  for (int i = 0; i < 60; ++i) {
-    const double thick = random.uniform(0.016, 0.042);
-    if (x + thick > width) break;
-    const double tall = height * random.uniform(0.66, 0.97);
-    const std::uint64_t own = random.next();
-    const cv::Mat spine = draw_spine(60, 420, own);
-    BoxTextures faces = BoxTextures::all(plain(picture(spine, 1.0F, 1.0F)(0.5F, 0.03F)));
-    faces.front = picture(spine, static_cast<float>(thick), static_cast<float>(tall));
-    faces.top = pages;
-    add_box(model, on(place, {x + 0.5 * thick, random.uniform(-0.012, 0.012), 0}),
-            {thick - 0.001, depth, tall}, faces, small_things());
-    x += thick;
-  }
-  return x;
-}
-
-void add_mug(RoomModel& model, const Place& place, const Color& color, std::uint32_t seed) {
-  const Texture glaze = mottled(color, 1.12F * color, 0.02F, seed);
-  const Texture band = [glaze](float u, float v) -> Color {
-    return v > 0.03F && v < 0.052F ? Color(0.75F, 0.70F, 0.60F) : glaze(u, v);
-  };
-  add_revolution(model, place,
-                 {{0.0, 0.001},
-                  {0.034, 0.001},
-                  {0.038, 0.006},
-                  {0.040, 0.05},
-                  {0.041, 0.094},
-                  {0.0395, 0.096},
-                  {0.0375, 0.093},
-                  {0.0365, 0.074}},
-                 band);
-  // Coffee, as a flat disc of a surface of revolution.
-  add_revolution(model, place, {{0.0365, 0.074}, {0.0, 0.074}}, plain(Color(0.03F, 0.015F, 0.008F)),
-                 20);
-  std::vector<Vector3d> handle;
-  for (int i = 0; i <= 10; ++i) {
-    const double angle = kPi * (0.5 - static_cast<double>(i) / 10);
-    handle.push_back(
-        place.to_world({0.037 + 0.026 * std::cos(angle), 0, 0.05 + 0.028 * std::sin(angle)}));
-  }
-  add_tube(model, handle, 0.006, glaze, 8);
-}
-
-void add_fruit_bowl(RoomModel& model, const Place& place, std::uint64_t seed) {
-  Random random(seed);
-  const auto texture_seed = static_cast<std::uint32_t>(seed);
-  const Texture clay =
-      mottled(color_from_srgb(0xE7E2D6), color_from_srgb(0xC9D3D2), 0.04F, texture_seed);
-  add_revolution(model, place,
-                 {{0.0, 0.001},
-                  {0.05, 0.001},
-                  {0.052, 0.012},
-                  {0.09, 0.035},
-                  {0.125, 0.075},
-                  {0.122, 0.078},
-                  {0.085, 0.040},
-                  {0.045, 0.020},
-                  {0.0, 0.018}},
-                 clay, 32);
-  static constexpr std::uint32_t kFruit[][2] = {
-      {0xE8892B, 0xF0A03C}, {0xB53A2C, 0xD9A23E}, {0x8FA83A, 0xC9C24F}, {0xE8892B, 0xEB9A37}};
-  for (int i = 0; i < 5; ++i) {
-    const double angle = 2.0 * kPi * i / 4.0 + 0.4;
-    const double radius = i < 4 ? 0.052 : 0.0;
-    const double size = random.uniform(0.034, 0.040);
-    const auto& pair = kFruit[i % 4];
-    add_ball(
-        model,
-        place.to_world({radius * std::cos(angle), radius * std::sin(angle), i < 4 ? 0.066 : 0.112}),
-        size,
-        mottled(color_from_srgb(pair[0]), color_from_srgb(pair[1]), 0.03F,
-                texture_seed + static_cast<std::uint32_t>(i)));
-  }
-}
-
-void add_vase(RoomModel& model, const Place& place, const Color& color, std::uint64_t seed) {
-  Random random(seed);
-  const Texture glaze =
-      mottled(0.85F * color, 1.2F * color, 0.05F, static_cast<std::uint32_t>(seed));
-  add_revolution(model, place,
-                 {{0.0, 0.001},
-                  {0.035, 0.001},
-                  {0.055, 0.03},
-                  {0.062, 0.07},
-                  {0.050, 0.115},
-                  {0.027, 0.145},
-                  {0.024, 0.165},
-                  {0.031, 0.18},
-                  {0.028, 0.18},
-                  {0.020, 0.16}},
-                 glaze);
-  const Texture twig = plain(color_from_srgb(0x6B5138));
-  for (int i = 0; i < 5; ++i) {
-    const double angle = random.uniform(0, 2 * kPi);
-    const double lean = random.uniform(0.02, 0.07);
-    const Vector3d out(std::cos(angle), std::sin(angle), 0);
-    std::vector<Vector3d> path;
-    for (int k = 0; k <= 4; ++k) {
-      const double t = k / 4.0;
-      path.push_back(place.to_world(lean * t * t * out + Vector3d(0, 0, 0.15 + 0.19 * t)));
-    }
-    add_tube(model, path, 0.0018, twig, 6);
-    for (int k = 1; k <= 4; ++k) {
-      add_ball(model, path[static_cast<std::size_t>(k)], 0.008,
-               plain(color_from_srgb(i % 2 == 0 ? 0xEFE3D0 : 0xD98A78)));
-    }
-  }
-}
-
-void add_plant(RoomModel& model, const Place& place, double pot_m, int leaves, double leaf_m,
-               std::uint64_t seed) {
-  Random random(seed);
-  const auto texture_seed = static_cast<std::uint32_t>(seed);
-  const double r = 0.5 * pot_m;
-  const double h = 0.95 * pot_m;
-  add_revolution(model, place,
-                 {{0.0, 0.001},
-                  {0.68 * r, 0.001},
-                  {0.90 * r, 0.78 * h},
-                  {0.91 * r, 0.8 * h},
-                  {r, 0.8 * h},
-                  {r, h},
-                  {0.90 * r, h},
-                  {0.86 * r, 0.88 * h}},
-                 mottled(color_from_srgb(0xC67A52), color_from_srgb(0xB0623F), 0.05F, texture_seed),
-                 32);
-  add_revolution(
-      model, place, {{0.86 * r, 0.88 * h}, {0.0, 0.90 * h}},
-      mottled(color_from_srgb(0x3A2C22), color_from_srgb(0x241A14), 0.012F, texture_seed), 24);
-  for (int i = 0; i < leaves; ++i) {
-    const double t = static_cast<double>(i) / leaves;
-    const double azimuth = place.yaw + 2.399963 * i + random.uniform(-0.2, 0.2);  // golden angle
-    const double rise = 0.35 + 1.0 * t + random.uniform(-0.08, 0.08);
-    const double length = leaf_m * random.uniform(0.8, 1.1);
-    const double width = 0.42 * length;
-    const Vector3d root = place.to_world({0, 0, 0.9 * h});
-    const Vector3d out(std::cos(azimuth), std::sin(azimuth), 0);
-    const double stem = leaf_m * random.uniform(0.35, 0.6);
-    const Vector3d tip =
-        root + stem * (std::cos(rise) * 0.5 * out + std::sin(rise) * Vector3d::UnitZ());
-    add_tube(model, {root, 0.5 * (root + tip) + 0.03 * stem * Vector3d::UnitZ(), tip},
-             0.010 * leaf_m + 0.0012, plain(color_from_srgb(0x5E7F45)), 6);
-    add_leaf(model, tip, azimuth, rise - 0.25, length, width,
-             leaf_texture(width, texture_seed + static_cast<std::uint32_t>(i)));
-  }
-}
-
-void add_lamp(RoomModel& model, const Place& place, double height, double shade_m,
-              std::uint32_t seed) {
-  const double shade_height = 0.72 * shade_m;
-  const double low = height - shade_height;
-  const Texture metal = mottled(color_from_srgb(0x8C744A), color_from_srgb(0xB79A66), 0.05F, seed);
-  const double foot = 0.30 * shade_m;
-  add_revolution(model, place,
-                 {{0.0, 0.001},
-                  {foot, 0.001},
-                  {foot, 0.012},
-                  {0.35 * foot, 0.022},
-                  {0.012, 0.04},
-                  {0.012, low + 0.5 * shade_height}},
-                 metal, 24);
-  const Texture weave = fabric(Color::Ones(), seed);
-  const auto top = static_cast<float>(shade_height);
-  const Texture glow = [weave, top](float u, float v) -> Color {
-    const float t = v / top - 0.45F;
-    return weave(u, v).cwiseProduct(Color(0.98F, 0.74F, 0.44F)) * (0.92F - 1.1F * t * t);
-  };
-  add_revolution(model, place, {{0.5 * shade_m, low}, {0.36 * shade_m, height}}, glow, 36, true);
-  add_revolution(model, place, {{0.36 * shade_m, height - 0.002}, {0.49 * shade_m, low + 0.002}},
-                 glow, 36, true);
-  LampLight lamp;
-  lamp.position = place.to_world({0, 0, low + 0.45 * shade_height}).cast<float>();
-  lamp.radius_m = static_cast<float>(0.25 * shade_m);
-  lamp.intensity = Color(1.0F, 0.70F, 0.40F) * static_cast<float>(1.6 * shade_m);
-  model.lamps.push_back(lamp);
-}
-
-void add_pencil(RoomModel& model, const Vector3d& from, const Vector3d& to, const Color& color) {
-  const Vector3d neck = from + 0.88 * (to - from);
-  add_tube(model, {from, neck}, 0.0036, plain(color), 6);
-  add_tube(model, {neck, 0.5 * (neck + to)}, 0.0026, plain(color_from_srgb(0xE6C79A)), 6);
-  add_tube(model, {0.5 * (neck + to), to}, 0.0012, plain(Color::Constant(0.03F)), 6);
-}
-
-void add_toy_block(RoomModel& model, const Place& place, double size, std::uint64_t seed) {
-  Random random(seed);
-  BoxTextures faces;
-  for (Texture* face : {&faces.front, &faces.right, &faces.back, &faces.left, &faces.top}) {
-    const PrintKind kind = random.below(2) == 0 ? PrintKind::kShapes : PrintKind::kBlocks;
-    *face = picture(draw_print(kind, 160, 160, random.next()), static_cast<float>(size),
-                    static_cast<float>(size));
-  }
-  add_box(model, place, Vector3d::Constant(size), faces, small_things());
-}
-
-void add_curtain(RoomModel& model, const Vector3d& from, const Vector3d& to, double drop,
-                 const Color& color, std::uint32_t seed) {
-  const double length = (to - from).norm();
-  const Vector3d along = (to - from) / length;
-  const Vector3d out = along.cross(Vector3d::UnitZ());
-  const int cols = std::max(24, static_cast<int>(length * 90));
-  constexpr int kRows = 6;
-  std::vector<Vector3d> points;
-  for (int j = 0; j <= kRows; ++j) {
-    const double t = static_cast<double>(j) / kRows;  // from the hem up
-    for (int i = 0; i <= cols; ++i) {
-      const double s = length * i / cols;
-      const double fold =
-          (0.032 - 0.012 * t) * std::sin(2.0 * kPi * s / 0.115 + 0.5 * std::sin(5.0 * s + t)) +
-          0.010 * std::sin(31.0 * s);
-      points.push_back(from + s * along + fold * out - (1.0 - t) * drop * Vector3d::UnitZ());
-    }
-  }
-  add_sheet(model, cols, kRows, points, fabric(color, seed), static_cast<float>(1.6 * length),
-            static_cast<float>(drop), 260.0F);
 }
 
 }  // namespace planecast::engine::synth

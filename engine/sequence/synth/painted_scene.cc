@@ -17,7 +17,7 @@ constexpr int kGutter =
     6;  // texels repeated around a patch, so that mip levels take nothing else in
 constexpr int kMaxSide = 2048;
 constexpr int kAtlasWidth = 2048;
-constexpr int kAtlasPatchSide = 384;  // larger ones get a texture of their own
+constexpr int kAtlasPatchSide = 1000;  // larger ones get a texture of their own
 
 struct Painted {
   int width = 0;  ///< without the gutter
@@ -177,7 +177,10 @@ void add_atlas(const RoomModel& model, const std::vector<Painted>& painted,
 render::OpaqueScene paint_scene(const RoomModel& model, float detail) {
   const std::vector<Painted> painted = paint_patches(model, detail);
   render::OpaqueScene scene;
-  for (std::size_t i = 0; i < painted.size(); ++i) {
+  add_atlas(model, painted, scene.surfaces);
+  // What was added last stands before what was added first, the walls: drawn in this order, most of
+  // what is hidden is never shaded.
+  for (std::size_t i = painted.size(); i-- > 0;) {
     if (goes_into_atlas(model.patches[i], painted[i])) continue;
     render::SurfaceMesh mesh;
     append_patch(model.patches[i], painted[i], 0, 0, painted[i].image->width,
@@ -186,7 +189,6 @@ render::OpaqueScene paint_scene(const RoomModel& model, float detail) {
     mesh.label = model.patches[i].label;
     scene.surfaces.push_back(std::move(mesh));
   }
-  add_atlas(model, painted, scene.surfaces);
   render::Sun none;
   none.radiance = glm::vec3(0.0F);
   none.casts_shadow = false;

@@ -146,12 +146,12 @@ void add_revolution(RoomModel& model, const Place& place, const std::vector<Prof
 
 void add_ball(RoomModel& model, const Vector3d& centre, double radius, Texture texture) {
   std::vector<ProfilePoint> profile;
-  const int rings = radius < 0.02 ? 5 : 10;
+  const int rings = radius < 0.02 ? 4 : 8;
   for (int i = 0; i <= rings; ++i) {
     const double angle = std::numbers::pi * (static_cast<double>(i) / rings - 0.5);
     profile.push_back({radius * std::cos(angle), radius * std::sin(angle)});
   }
-  add_revolution(model, {centre, 0.0}, profile, std::move(texture), radius < 0.02 ? 8 : 20);
+  add_revolution(model, {centre, 0.0}, profile, std::move(texture), radius < 0.02 ? 6 : 16);
 }
 
 void add_tube(RoomModel& model, const std::vector<Vector3d>& path, double radius, Texture texture,

@@ -115,13 +115,13 @@ struct ProfilePoint {
   double height;
 };
 void add_revolution(RoomModel& model, const Place& place, const std::vector<ProfilePoint>& profile,
-                    Texture texture, int segments = 28, bool shines = false);
+                    Texture texture, int segments = 22, bool shines = false);
 
 void add_ball(RoomModel& model, const Eigen::Vector3d& centre, double radius, Texture texture);
 
 /// A round bar along a polyline in the world.
 void add_tube(RoomModel& model, const std::vector<Eigen::Vector3d>& path, double radius,
-              Texture texture, int segments = 10);
+              Texture texture, int segments = 8);
 
 /// A free sheet: points of (cols+1) x (rows+1), row by row; normals from the points, u x v.
 void add_sheet(RoomModel& model, int cols, int rows, const std::vector<Eigen::Vector3d>& points,
