@@ -23,7 +23,10 @@ std::string one_line(std::string text) {
 /// CLI11 would only say that a command is missing.
 std::string describe(const CLI::ParseError& error, const CLI::App& cli, int argc, char** argv) {
   const std::string first = argc > 1 ? argv[1] : "";
-  if (!first.empty() && first[0] != '-' && cli.get_subcommand_no_throw(first) == nullptr) {
+  const auto commands = cli.get_subcommands([&](const CLI::App* command) {
+    return command->get_name() == first;
+  });
+  if (!first.empty() && first[0] != '-' && commands.empty()) {
     return "unknown command '" + first + "'";
   }
   return error.what();

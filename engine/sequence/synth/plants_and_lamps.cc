@@ -1,5 +1,6 @@
 #include "engine/sequence/synth/furniture.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

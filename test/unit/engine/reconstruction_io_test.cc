@@ -124,6 +124,8 @@ TEST(ReconstructionFolder, WritingTwiceGivesTheSameBytes) {
     // Rotations pass through quaternions of 12 decimals, which may move a last digit.
     if (name.string().starts_with("trajectory") || name == "keyframes.txt" || name == "scene.glb")
       continue;
+    // Times are of the run that took them and are not read back.
+    if (name.string().starts_with("time")) continue;
     EXPECT_TRUE(read_file(entry.path()) == read_file(folder / "b" / name)) << name;
   }
 }
