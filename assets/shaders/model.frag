@@ -34,6 +34,7 @@ uniform int u_emissive_map_set;
 uniform mat3 u_emissive_map_transform;
 
 #include "color.glsl"
+#include "stretched.glsl"
 #include "texture_slot.glsl"
 #ifdef OCCLUDER_DEPTH
 #include "occluder_depth.glsl"
@@ -51,7 +52,7 @@ out vec4 o_color;
 vec4 base_color() {
   vec4 color = u_base_color_factor * v_color;
 #ifdef BASE_COLOR_MAP
-  color *= texture(u_base_color, slot_uv(v_uv, u_base_color_set, u_base_color_transform));
+  color *= sample_stretched(u_base_color, slot_uv(v_uv, u_base_color_set, u_base_color_transform));
 #endif
   return color;
 }

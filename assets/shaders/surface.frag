@@ -12,6 +12,7 @@ uniform vec3 u_to_light;
 uniform vec3 u_sun_radiance;
 
 #include "color.glsl"
+#include "stretched.glsl"
 #ifdef SHADOWS
 #include "shadow.glsl"
 #endif
@@ -32,26 +33,10 @@ float small_specular(vec3 normal, vec3 to_eye) {
   return kDielectricReflectance * a2 / (4.0 * d * d * max(0.1, l_dot_h * l_dot_h) * (u_roughness + 0.5));
 }
 
-#ifdef TEXTURE
-// Mip levels follow the longer axis of a pixel's footprint, which blurs what is seen at a slant; up to
-// a ratio of 2.25 they follow the mean of both instead. llvmpipe's own anisotropic filter costs five
-// times the whole pass, whatever its level.
-vec3 base_color() {
-  vec2 size = vec2(textureSize(u_base_color, 0));
-  vec2 across = dFdx(v_uv) * size;
-  vec2 down = dFdy(v_uv) * size;
-  float a = dot(across, across);
-  float d = dot(down, down);
-  float squared_ratio = max(a, d) / max(min(a, d), 1e-12);
-  float bias = -0.25 * log2(clamp(squared_ratio, 1.0, 5.0));
-  return texture(u_base_color, v_uv, bias).rgb;
-}
-#endif
-
 void main() {
   vec3 albedo = u_color_factor;
 #ifdef TEXTURE
-  albedo *= base_color();
+  albedo *= sample_stretched(u_base_color, v_uv).rgb;
 #endif
   vec3 normal = normalize(v_normal);
   vec3 color = albedo * v_ambient;

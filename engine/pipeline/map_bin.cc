@@ -125,39 +125,6 @@ void take_about(ByteReader& in, Reconstruction& reconstruction) {
   for (std::string& warning : reconstruction.warnings) warning = in.text();
 }
 
-void put_times(const Reconstruction& reconstruction, ByteWriter& out) {
-  out.put(static_cast<std::uint64_t>(reconstruction.frame_times.size()));
-  for (const StageTimes& times : reconstruction.frame_times) {
-    out.put(static_cast<std::uint64_t>(times.size()));
-    for (const auto& [name, ms] : times) {
-      out.put(std::string_view(name));
-      out.put(ms);
-    }
-  }
-  out.put(static_cast<std::uint64_t>(reconstruction.mapping_times.size()));
-  for (const auto& [name, samples] : reconstruction.mapping_times) {
-    out.put(std::string_view(name));
-    out.put(samples);
-  }
-}
-
-void take_times(ByteReader& in, Reconstruction& reconstruction) {
-  reconstruction.frame_times.resize(in.count_of(sizeof(std::uint64_t)));
-  for (StageTimes& times : reconstruction.frame_times) {
-    times.resize(in.count_of(sizeof(std::uint64_t) + sizeof(double)));
-    for (auto& [name, ms] : times) {
-      name = in.text();
-      ms = in.number<double>();
-    }
-  }
-  reconstruction.mapping_times.clear();
-  const std::size_t stages = in.count_of(2 * sizeof(std::uint64_t));
-  for (std::size_t i = 0; i < stages; ++i) {
-    const std::string name = in.text();
-    reconstruction.mapping_times[name] = in.numbers();
-  }
-}
-
 void put_chunk(std::string_view tag, const ByteWriter& payload, std::string& bytes) {
   ByteWriter size;
   size.put(static_cast<std::uint64_t>(payload.bytes().size()));
@@ -178,9 +145,6 @@ void write_map_bin(const Reconstruction& reconstruction, const std::filesystem::
   ByteWriter about;
   put_about(reconstruction, about);
   put_chunk("ABOU", about, bytes);
-  ByteWriter times;
-  put_times(reconstruction, times);
-  put_chunk("TIME", times, bytes);
   write_file(path, bytes);
 }
 
@@ -201,8 +165,6 @@ void read_map_bin(const std::filesystem::path& path, Reconstruction& reconstruct
       has_camera = true;
     } else if (tag == "ABOU") {
       take_about(chunk, reconstruction);
-    } else if (tag == "TIME") {
-      take_times(chunk, reconstruction);
     }
   }
   if (!has_camera) file.fail("has no camera");

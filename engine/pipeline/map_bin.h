@@ -7,7 +7,7 @@
 namespace planecast::engine {
 
 /// map.bin holds what the readable files of a reconstruction folder do not, exactly: camera, mode,
-/// segmentation, scale, times of every frame and keyframe, warnings.
+/// segmentation, scale, warnings. No times: the file is the same bytes for the same input.
 ///
 /// Layout, little endian: 8 bytes "PLNCMAP" 0, uint32 version (1), then chunks until the end: 4
 /// bytes tag, uint64 size, payload. Readers skip chunks they do not know, so that later versions

@@ -24,10 +24,7 @@ TextureHandle upload_image(const Gl& gl, const ImageU8& image, const TextureOpti
   gl.TextureParameteri(id, GL_TEXTURE_WRAP_T, options.wrap_t);
   gl.TextureParameteri(id, GL_TEXTURE_MIN_FILTER, options.min_filter);
   gl.TextureParameteri(id, GL_TEXTURE_MAG_FILTER, options.mag_filter);
-  if (mipmaps) {
-    gl.GenerateTextureMipmap(id);
-    gl.TextureParameterf(id, GL_TEXTURE_MAX_ANISOTROPY, options.anisotropy);
-  }
+  if (mipmaps) gl.GenerateTextureMipmap(id);
   return texture;
 }
 

@@ -11,7 +11,6 @@ struct TextureOptions {
   GLint wrap_t = GL_REPEAT;
   GLint min_filter = GL_LINEAR_MIPMAP_LINEAR;
   GLint mag_filter = GL_LINEAR;
-  float anisotropy = 16.0F;
 };
 
 /// Uploads 1 to 4 channels with the mip levels the filter needs. Row 0 of the image is at v = 0.

@@ -25,10 +25,6 @@ bool finite(const glm::mat4& matrix) {
   return std::isfinite(sum);
 }
 
-/// Anisotropic reads cost a software rasteriser more than all of the shading; only colours, where
-/// blur is seen, get them.
-constexpr float kColorAnisotropy = 4.0F;
-
 }  // namespace
 
 void DrawItem::draw(const Gl& gl) const {
@@ -128,12 +124,8 @@ GLuint ModelSet::texture(const DrawItem& item, const TextureSlot& slot, bool srg
   const auto known = item.gpu->textures.find({slot.texture, srgb});
   if (known != item.gpu->textures.end()) return known->second.id();
   const ModelTexture& texture = item.model->textures[static_cast<std::size_t>(slot.texture)];
-  const TextureOptions options{srgb,
-                               texture.wrap_s,
-                               texture.wrap_t,
-                               texture.min_filter,
-                               texture.mag_filter,
-                               srgb ? kColorAnisotropy : 1.0F};
+  const TextureOptions options{srgb, texture.wrap_s, texture.wrap_t, texture.min_filter,
+                               texture.mag_filter};
   TextureHandle handle =
       upload_image(*gl_, item.model->images[static_cast<std::size_t>(texture.image)], options);
   const GLuint id = handle.id();

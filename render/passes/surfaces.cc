@@ -103,7 +103,6 @@ const SurfaceSet::Texture* SurfaceSet::texture_of(const SurfaceMesh& surface) {
   if (known != textures_.end()) return &known->second;
   TextureOptions options;
   options.srgb = true;
-  options.anisotropy = 1.0F;  // surface.frag does it, far cheaper
   Texture texture{image, upload_image(*gl_, *image, options)};
   return &textures_.emplace(image.get(), std::move(texture)).first->second;
 }
@@ -137,7 +136,7 @@ void SurfaceSet::draw_color(ShaderLibrary& shaders, const OpaqueScene& scene, co
       program.set("u_to_light", glm::normalize(scene.light.sun.direction_to_light));
       program.set("u_sun_radiance", scene.light.sun.radiance);
       program.set("u_base_color", static_cast<int>(kUnitBaseColor));
-      if (shadow != nullptr) shadow->bind(program, scene.light.sun, true);
+      if (shadow != nullptr) shadow->bind(program, scene.light.sun);
       previous = &program;
     }
     const SurfaceMesh& surface = scene.surfaces[i];

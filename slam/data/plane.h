@@ -31,7 +31,8 @@ struct Plane {
   int age_keyframes = 0;              ///< keyframes since birth
   std::vector<KeyframeId> observers;  ///< ascending
   std::vector<PlaneId> merged_from;   ///< ids that were merged into this one, ascending
-  int stalled_keyframes = 0;          ///< keyframes since it last gained support
+  int doubts = 0;  ///< keyframes, less the good ones, in which it did not look like a plane
+  int stalled_keyframes = 0;  ///< keyframes since it last gained support
   std::vector<Eigen::Vector3d>
       depth_points;  ///< RGB-D: sampled support in the world, beside landmarks
   std::vector<DepthAnchor> depth_anchors;  ///< of depth_points, one each

@@ -14,10 +14,10 @@ struct HomographyOptions {
   int image_width = 640;
   int image_height = 480;
   double threshold_px = 2.0;  ///< symmetric transfer error of an inlier [P]
-  /// eps_L: accepted RMS of the inliers' errors [D]. Chance matches fill the threshold's disc and have 1.41;
-  /// keypoint noise of 1 px, cut off at the threshold, has 1.29, of 0.5 px 0.93.
+  /// eps_L: accepted RMS of the inliers' errors [D]. Chance matches fill the threshold's disc and
+  /// have 1.41; keypoint noise of 1 px, cut off at the threshold, has 1.29, of 0.5 px 0.93.
   double max_rms_px = 1.3;
-  double lambda = 0.975;      ///< spatial coherence [P]
+  double lambda = 0.975;  ///< spatial coherence [P]
   int min_inliers = 12;
   double min_inlier_ratio = 0.1;
   bool graph_cut = true;   ///< false: plain RANSAC, for the ablation

@@ -82,6 +82,7 @@ void PlaneMapper::update(Map& map, KeyframeId keyframe, PlaneMappingStats& stats
   {
     const StepTimer timer(stats.merge_expand_ms);
     stats.expanded += expand_planes(map, keyframe, context, shown);
+    doubt_planes(map, context, shown);
     stats.merged += merge_planes(map, context);
   }
   {

@@ -9,27 +9,15 @@
 #include "slam/fitting/plane_model.h"
 #include "slam/fitting/samplers.h"
 #include "slam/fitting/sequential.h"
-#include "slam/geometry/point_clusters.h"
+#include "slam/stages/plane_plausibility.h"
 #include "slam/stages/plane_steps.h"
 
 namespace planecast::slam {
 
 namespace {
 
-/// What a fit must show beyond count and RMS to be a plane and not a slab cut out of clutter [D]. A
-/// slab of scattered points has as many points beside it as in it, its points' neighbours in the
-/// image are others', and many such slabs run along the viewing rays.
-struct PlausibilityOptions {
-  double min_contrast = 2.5;    ///< density inside the band over that between 1 and 3 bands
-  double min_coherence = 0.45;  ///< share of the inliers' nearest image neighbours that are inliers
-  int coherence_neighbours = 6;
-  int min_coherent_neighbours = 2;  ///< an inlier with fewer is dropped
-  double min_view_cosine = 0.1;     ///< mean, of viewing rays to the normal
-  double min_breadth = 1.5;         ///< standard deviation along the shorter side, in eps_d
-  double min_slimness = 0.07;       ///< of the shorter side over the longer
-  int min_unmasked = 20;            ///< inliers, where no mask speaks for the plane
-};
-
+/// Inliers that a plane must have where no mask speaks for it.
+constexpr int kMinUnmasked = 20;
 constexpr double kMinMaskRatio = 0.3;  ///< of a mask group's points that must be inliers
 /// [D] Without masks the fits' threshold is eps_Pi. A slab of the wider eps_d cut through a stair
 /// or through clutter holds more points than a true plane, and a plane must be as thin as eps_Pi in
@@ -86,19 +74,11 @@ PlanePoints select(const PlanePoints& points, const std::vector<int>& indices) {
   return result;
 }
 
-struct Candidate {
-  PlaneEquation plane;
-  std::vector<int> inliers;  ///< indices into KeyframePoints
-};
-
 /// Finds the planes of one keyframe.
 class PlaneFinder {
  public:
   PlaneFinder(Map& map, KeyframeId keyframe, const PlaneContext& context, KeyframePoints& shown)
-      : map_(map), keyframe_(keyframe), context_(context), shown_(shown) {
-    constexpr int kImageNeighbours = 16;
-    nearest_ = nearest_points(shown.pixel, kImageNeighbours);
-  }
+      : map_(map), keyframe_(keyframe), context_(context), shown_(shown) {}
 
   int find_in_masks() {
     std::vector<int> labels = shown_.label;
@@ -108,7 +88,7 @@ class PlaneFinder {
     int found = 0;
     for (const std::vector<int>& group : groups_by_label(labels, context_.options.min_inliers)) {
       const auto candidate = fit(group, context_.scale.eps_d, kMinMaskRatio);
-      if (!candidate || !is_broad(*candidate) || !stands_out(*candidate)) continue;
+      if (!candidate || !is_plausible(*candidate)) continue;
       add_plane(*candidate, shown_.label[group.front()]);
       ++found;
     }
@@ -122,7 +102,7 @@ class PlaneFinder {
     }
     int found = 0;
     int implausible = 0;
-    const int min_size = std::max(context_.options.min_inliers, plausible_.min_unmasked);
+    const int min_size = std::max(context_.options.min_inliers, kMinUnmasked);
     fit_sequentially(pool, min_size, kMaxModelsWithoutMasks, [&](const std::vector<int>& left) {
       if (implausible == kMaxImplausible) return std::vector<int>();
       auto candidate = fit(left, context_.scale.eps_pi, 0.0);
@@ -131,10 +111,11 @@ class PlaneFinder {
       const std::vector<int> consumed = candidate->inliers;
       ++implausible;
       if (!widen(left, *candidate)) return consumed;
-      keep_coherent(*candidate);
-      keep_connected(*candidate);
-      if (static_cast<int>(candidate->inliers.size()) < min_size || !is_broad(*candidate) ||
-          !stands_out(*candidate)) {
+      const bool coherent = coherence(shown_, *candidate) > plausible_.min_coherence;
+      keep_coherent(shown_, plausible_, *candidate);
+      keep_connected(shown_, context_.scale, *candidate);
+      if (!coherent || static_cast<int>(candidate->inliers.size()) < min_size ||
+          !is_plausible(*candidate)) {
         return consumed;
       }
       --implausible;
@@ -159,7 +140,8 @@ class PlaneFinder {
     return options;
   }
 
-  std::optional<Candidate> fit(const std::vector<int>& group, double threshold, double min_ratio) {
+  std::optional<PlaneCandidate> fit(const std::vector<int>& group, double threshold,
+                                    double min_ratio) {
     const PlanePoints points = select(shown_.points, group);
     const PlaneModel model(points);
     std::vector<NeighbourPair> neighbours;
@@ -172,7 +154,7 @@ class PlaneFinder {
         mix_seed(context_.options.seed, static_cast<std::uint64_t>(keyframe_) * 4096 + ++fits_);
     const auto result = run(model, group, neighbours, options);
     if (!result.accepted) return std::nullopt;
-    Candidate candidate;
+    PlaneCandidate candidate;
     candidate.plane = result.model;
     for (std::size_t i = 0; i < group.size(); ++i) {
       if (result.inlier[i]) candidate.inliers.push_back(group[i]);
@@ -188,12 +170,12 @@ class PlaneFinder {
       UniformSampler sampler(model.size(), PlaneModel::kSampleSize);
       return GraphCutRansac(model, sampler, neighbours, options).run();
     }
-    LocalPlaneSampler sampler(nearest_, group);
+    LocalPlaneSampler sampler(shown_.nearest, group);
     return GraphCutRansac(model, sampler, neighbours, options).run();
   }
 
   /// Takes in what lies within eps_d and refits; false where that is thicker than eps_Pi.
-  bool widen(const std::vector<int>& pool, Candidate& candidate) const {
+  bool widen(const std::vector<int>& pool, PlaneCandidate& candidate) const {
     std::vector<double> weights;
     for (const double band : shown_.points.band) weights.push_back(1.0 / (band * band));
     std::optional<PlaneFit> fitted;
@@ -214,105 +196,12 @@ class PlaneFinder {
     return fitted->rms < context_.scale.eps_pi;
   }
 
-  std::vector<char> marks_of(const Candidate& candidate) const {
-    std::vector<char> marks(static_cast<std::size_t>(shown_.size()), 0);
-    for (const int i : candidate.inliers) marks[i] = 1;
-    return marks;
+  bool is_plausible(const PlaneCandidate& candidate) const {
+    return is_broad(shown_, candidate, plausible_, context_.scale) &&
+           contrast(map_, shown_, candidate, context_.scale) > plausible_.min_contrast;
   }
 
-  int inlier_neighbours(const std::vector<char>& is_inlier, int i) const {
-    int count = 0;
-    for (int k = 0; k < plausible_.coherence_neighbours; ++k) {
-      const int other = nearest_.index[static_cast<std::size_t>(i) * nearest_.count + k];
-      count += other >= 0 && is_inlier[other];
-    }
-    return count;
-  }
-
-  /// Drops inliers that lie amid others in the image; all of them where that is the rule.
-  void keep_coherent(Candidate& candidate) const {
-    const std::vector<char> is_inlier = marks_of(candidate);
-    std::vector<int> kept;
-    double sum = 0.0;
-    for (const int i : candidate.inliers) {
-      const int count = inlier_neighbours(is_inlier, i);
-      sum += count;
-      if (count >= plausible_.min_coherent_neighbours) kept.push_back(i);
-    }
-    const double most =
-        static_cast<double>(candidate.inliers.size()) * plausible_.coherence_neighbours;
-    if (sum < plausible_.min_coherence * most) kept.clear();
-    candidate.inliers = std::move(kept);
-  }
-
-  /// Keeps the largest patch: what lies across a gap may be another plane of the same height.
-  void keep_connected(Candidate& candidate) const {
-    if (candidate.inliers.empty()) return;
-    const std::vector<Eigen::Vector3d> points = select(shown_.points, candidate.inliers).positions;
-    const std::vector<int> cluster = cluster_points(points, link_of(points, context_.scale));
-    std::vector<int> kept;
-    for (std::size_t i = 0; i < cluster.size(); ++i) {
-      if (cluster[i] == 0) kept.push_back(candidate.inliers[i]);
-    }
-    candidate.inliers = std::move(kept);
-  }
-
-  /// Neither a line of points nor seen edge-on.
-  bool is_broad(const Candidate& candidate) const {
-    const PlanePoints points = select(shown_.points, candidate.inliers);
-    Plane frame;
-    frame.refit(candidate.plane.normal, candidate.plane.offset);
-    const Pose plane_from_world = frame.world_from_plane().inverse();
-    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-    double view = 0.0;
-    for (int i = 0; i < points.size(); ++i) {
-      mean += (plane_from_world * points.positions[i]).head<2>();
-      view += points.view_from[i].dot(candidate.plane.normal);
-    }
-    mean /= points.size();
-    Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
-    for (const Eigen::Vector3d& p : points.positions) {
-      const Eigen::Vector2d step = (plane_from_world * p).head<2>() - mean;
-      spread += step * step.transpose() / points.size();
-    }
-    const double half_trace = 0.5 * spread.trace();
-    const double root = std::sqrt(std::max(half_trace * half_trace - spread.determinant(), 0.0));
-    const double longer = std::sqrt(half_trace + root);
-    const double shorter = std::sqrt(std::max(half_trace - root, 0.0));
-    return view > plausible_.min_view_cosine * points.size() &&
-           shorter > plausible_.min_breadth * context_.scale.eps_d &&
-           shorter > plausible_.min_slimness * longer;
-  }
-
-  /// Whether points crowd in the band. Beside it count the points over the same patch that no plane
-  /// owns or one that is nearly parallel, so that no second layer is laid over a noisy plane.
-  bool stands_out(const Candidate& candidate) const {
-    const std::vector<Eigen::Vector3d> patch = select(shown_.points, candidate.inliers).positions;
-    const double link = link_of(patch, context_.scale);
-    const std::vector<char> is_inlier = marks_of(candidate);
-    int beside = 0;
-    for (int i = 0; i < shown_.size(); ++i) {
-      if (is_inlier[i] || !may_rival(i, candidate)) continue;
-      const double distance = candidate.plane.signed_distance(shown_.points.positions[i]);
-      const double bands = std::abs(distance) / (shown_.points.band[i] * context_.scale.eps_d);
-      if (bands > 3.0 || bands < 1.0) continue;
-      const Eigen::Vector3d foot = shown_.points.positions[i] - distance * candidate.plane.normal;
-      const bool over_patch = std::any_of(
-          patch.begin(), patch.end(),
-          [&](const Eigen::Vector3d& p) { return (p - foot).squaredNorm() < link * link; });
-      beside += over_patch;
-    }
-    // The space beside is twice as thick as the band.
-    return static_cast<double>(candidate.inliers.size()) > plausible_.min_contrast * 0.5 * beside;
-  }
-
-  bool may_rival(int i, const Candidate& candidate) const {
-    if (shown_.plane[i] == kNone) return true;
-    constexpr double kNearlyParallel = 0.9;
-    return map_.planes.at(shown_.plane[i]).normal.dot(candidate.plane.normal) > kNearlyParallel;
-  }
-
-  void add_plane(const Candidate& candidate, int label) {
+  void add_plane(const PlaneCandidate& candidate, int label) {
     const Keyframe& keyframe = map_.keyframes.at(keyframe_);
     Plane plane;
     plane.id = map_.planes.next_id();
@@ -334,7 +223,8 @@ class PlaneFinder {
         ++plane.inliers;
       }
     }
-    plane.weak = static_cast<int>(candidate.inliers.size()) < context_.options.strong_inliers;
+    plane.weak =
+        static_cast<int>(candidate.inliers.size()) < strong_support(plane, context_.options);
     map_.planes.put(std::move(plane));
   }
 
@@ -343,7 +233,6 @@ class PlaneFinder {
   const PlaneContext& context_;
   KeyframePoints& shown_;
   PlausibilityOptions plausible_;
-  NearestTable nearest_;
   std::uint64_t fits_ = 0;
 };
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "slam/stages/plane_plausibility.h"
 #include "slam/stages/plane_steps.h"
 
 namespace planecast::slam {
@@ -14,6 +15,11 @@ constexpr double kMaskShare = 0.5;
 constexpr int kMinMaskVotes = 3;
 /// Support within linking distance that a point needs to join.
 constexpr int kMinNeighbours = 2;
+/// Of kCoherenceNeighbours, that the plane must explain for a point to join where there are no
+/// masks: more for a plane that has yet to prove itself.
+constexpr int kMinExplainedByLarge = 1;
+constexpr int kLargeSupport = 100;
+constexpr int kMinExplained = 3;
 /// Landmarks by which a keyframe becomes an observer of a plane.
 constexpr int kMinObserved = 5;
 /// Depth points kept per plane.
@@ -23,6 +29,12 @@ constexpr int kMostSupport = 600;
 /// Rounds in which what has just joined may bring in its neighbours.
 constexpr int kRounds = 3;
 
+/// Where masks do not speak for it, a plane is judged in every keyframe that shows so many of its
+/// points, by looser limits than at its birth.
+constexpr int kMinJudged = 25;
+constexpr double kDoubtfulCoherence = 0.4;
+constexpr double kDoubtfulContrast = 2.0;
+constexpr int kMostDoubts = 2;
 /// RMS, in eps_Pi, beyond which a plane's support has stopped being one.
 constexpr double kMaxThickness = 1.5;
 
@@ -71,6 +83,9 @@ struct Growing {
   std::vector<Eigen::Vector3d> support;
   double link = 0.0;
 
+  int min_explained() const {
+    return static_cast<int>(support.size()) < kLargeSupport ? kMinExplained : kMinExplainedByLarge;
+  }
   bool is_near(const Eigen::Vector3d& point) const {
     int near = 0;
     for (const Eigen::Vector3d& other : support) {
@@ -93,6 +108,19 @@ std::vector<Growing> growing_planes(const Map& map, const PlaneContext& context)
   return result;
 }
 
+/// Nearest image neighbours of point i that the plane explains too, whoever owns them: without
+/// masks, what lies amid other things is not on the plane even if it is near it.
+int explained_neighbours(const KeyframePoints& shown, int i, const Plane& plane, double eps_d) {
+  int count = 0;
+  for (int k = 0; k < kCoherenceNeighbours; ++k) {
+    const int other = shown.nearest.index[static_cast<std::size_t>(i) * shown.nearest.count + k];
+    if (other < 0) continue;
+    const double distance = std::abs(plane.signed_distance(shown.points.positions[other]));
+    count += distance < shown.points.band[other] * eps_d;
+  }
+  return count;
+}
+
 /// The nearest plane that takes point i, or null.
 Growing* taker_of(const Map& map, std::vector<Growing>& planes, const KeyframePoints& shown, int i,
                   const MaskVotes& masks, const PlaneContext& context) {
@@ -104,6 +132,10 @@ Growing* taker_of(const Map& map, std::vector<Growing>& planes, const KeyframePo
     const double distance = std::abs(plane.signed_distance(points.positions[i]));
     if (distance >= best || points.view_from[i].dot(plane.normal) <= 0.0) continue;
     if (!masks.allow(shown.label[i], plane.id) || !growing.is_near(points.positions[i])) continue;
+    if (!shown.has_masks &&
+        explained_neighbours(shown, i, plane, context.scale.eps_d) < growing.min_explained()) {
+      continue;
+    }
     best = distance;
     taker = &growing;
   }
@@ -159,16 +191,32 @@ int expand_planes(Map& map, KeyframeId keyframe, const PlaneContext& context,
   return joined;
 }
 
+void doubt_planes(Map& map, const PlaneContext& context, const KeyframePoints& shown) {
+  if (shown.has_masks) return;
+  for (Plane& plane : map.planes) {
+    PlaneCandidate candidate{{plane.normal, plane.offset}, {}};
+    for (int i = 0; i < shown.size(); ++i) {
+      if (shown.plane[i] == plane.id) candidate.inliers.push_back(i);
+    }
+    if (static_cast<int>(candidate.inliers.size()) < kMinJudged) continue;
+    const bool good = coherence(shown, candidate) > kDoubtfulCoherence &&
+                      contrast(map, shown, candidate, context.scale) > kDoubtfulContrast;
+    plane.doubts = good ? std::max(plane.doubts - 1, 0) : plane.doubts + 1;
+  }
+}
+
 int drop_weak_planes(Map& map, const PlaneContext& context) {
   const std::vector<PlaneSupport> support = gather_support(map, context);
   std::vector<PlaneId> dropped;
   for (Plane& plane : map.planes) {
     update_figures(plane, support[plane.id], context);
     const bool starved = support[plane.id].points.size() < context.options.min_inliers;
-    const bool thick = plane.rms > kMaxThickness * context.scale.eps_pi;
+    // What the paper's merging joins may be thick; it has no such test.
+    const bool thick = context.options.merge == PlaneMerge::kDefault &&
+                       plane.rms > kMaxThickness * context.scale.eps_pi;
     const bool stalled =
         plane.weak && plane.stalled_keyframes >= context.options.weak_max_keyframes;
-    if (starved || thick || stalled) dropped.push_back(plane.id);
+    if (starved || thick || stalled || plane.doubts > kMostDoubts) dropped.push_back(plane.id);
     ++plane.age_keyframes;
     ++plane.stalled_keyframes;
   }

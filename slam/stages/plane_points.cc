@@ -83,6 +83,8 @@ KeyframePoints gather_points(const Map& map, KeyframeId id, const PlaneContext& 
   result.has_masks = !keyframe->label_image.empty() ||
                      std::any_of(keyframe->labels.begin(), keyframe->labels.end(),
                                  [](int label) { return label > 0; });
+  constexpr int kImageNeighbours = 16;
+  if (!result.has_masks) result.nearest = nearest_points(result.pixel, kImageNeighbours);
   return result;
 }
 
@@ -114,6 +116,10 @@ std::vector<PlaneSupport> gather_support(const Map& map, const PlaneContext& con
   return result;
 }
 
+int strong_support(const Plane& plane, const PlaneMappingOptions& options) {
+  return plane.label > 0 ? options.strong_inliers : 2 * options.strong_inliers;
+}
+
 void update_figures(Plane& plane, const PlaneSupport& support, const PlaneContext& context) {
   double sum = 0.0;
   double weight = 0.0;
@@ -125,7 +131,7 @@ void update_figures(Plane& plane, const PlaneSupport& support, const PlaneContex
   }
   plane.rms = weight > 0.0 ? std::sqrt(sum / weight) : 0.0;
   plane.inliers = static_cast<int>(support.landmarks.size());
-  plane.weak = support.points.size() < context.options.strong_inliers;
+  plane.weak = support.points.size() < strong_support(plane, context.options);
 }
 
 void add_depth_point(Plane& plane, KeyframeId keyframe, const Eigen::Vector3d& position,

@@ -5,6 +5,7 @@
 
 #include "slam/data/camera.h"
 #include "slam/data/map.h"
+#include "slam/fitting/neighbourhood.h"
 #include "slam/fitting/plane_model.h"
 #include "slam/stages/map_planes.h"
 
@@ -31,6 +32,7 @@ struct KeyframePoints {
   std::vector<int> label;                  ///< mask instance, 0 = none
   std::vector<Eigen::Vector3d> pixel;      ///< undistorted, third coordinate 0
   std::vector<Eigen::Vector3f> point_cam;  ///< of depth samples
+  NearestTable nearest;                    ///< in the image; only where there are no masks
   bool has_masks = false;                  ///< somebody segmented this image
 
   int size() const { return points.size(); }
@@ -44,6 +46,10 @@ struct PlaneSupport {
 };
 /// Support of all planes by plane id (empty for ids that are gone), in one pass over the landmarks.
 std::vector<PlaneSupport> gather_support(const Map& map, const PlaneContext& context);
+
+/// Support below which the plane is weak. [D] Twice the option for one that was found without a
+/// mask and so has no second witness.
+int strong_support(const Plane& plane, const PlaneMappingOptions& options);
 
 /// Weighted RMS and landmark count into the plane, whether it is weak, from its support.
 void update_figures(Plane& plane, const PlaneSupport& support, const PlaneContext& context);

@@ -19,8 +19,13 @@ int cull_far_landmarks(Map& map, KeyframeId keyframe, const PlaneContext& contex
 int expand_planes(Map& map, KeyframeId keyframe, const PlaneContext& context,
                   KeyframePoints& shown);
 
+/// Judges by coherence and contrast whether the planes in an image without masks still look like
+/// planes, and counts in Plane::doubts where not.
+void doubt_planes(Map& map, const PlaneContext& context, const KeyframePoints& shown);
+
 /// Ages every plane by a keyframe, drops weak ones that have stalled for too long and those that
-/// have lost their support or have become thicker than 1.5 eps_Pi. Returns the number dropped.
+/// have lost their support have become thicker than 1.5 eps_Pi or were doubted too often. Returns
+/// the number dropped.
 int drop_weak_planes(Map& map, const PlaneContext& context);
 
 /// New planes from the points that no plane owns: one fit per mask instance, or sequential fits

@@ -72,8 +72,6 @@ TEST(ReconstructionFolder, ReadsBackWhatWasWritten) {
   EXPECT_EQ(read.up, r.up);
   EXPECT_EQ(read.up_confidence, r.up_confidence);
   EXPECT_EQ(read.warnings, r.warnings);
-  EXPECT_EQ(read.frame_times, r.frame_times);
-  EXPECT_EQ(read.mapping_times, r.mapping_times);
   ASSERT_EQ(read.frames.size(), r.frames.size());
   for (std::size_t i = 0; i < r.frames.size(); ++i) {
     EXPECT_EQ(read.frames[i].index, r.frames[i].index);

@@ -102,7 +102,8 @@ TEST(Grid, FindsExactlyWhatLiesInTheSquare) {
   Features features;
   cv::RNG random(7);
   for (int i = 0; i < 500; ++i) {
-    Keypoint keypoint;
+    Keypoint keypoint{};
+    keypoint.raw.setZero();
     keypoint.pixel = {random.uniform(-20.0F, 660.0F), random.uniform(-20.0F, 500.0F)};
     keypoint.octave = random.uniform(0, 8);
     features.keypoints.push_back(keypoint);

@@ -61,8 +61,8 @@ TEST(PlaneFitting, LeakedMasksAreFittedBetterThanByPlainRansac) {
   }
   EXPECT_LT(with_cut, plain);
   EXPECT_LT(leaked_with_cut, leaked_plain);
-  // 160 points of noise s over 0.6 x 0.5: the slopes' errors are s sqrt(12 / 160) / 0.6 and / 0.5,
-  // together 0.68 degrees... the leak may at most double them.
+  // 160 points of noise s over 0.6 x 0.5: the slopes' errors are s sqrt(12 / 160) / 0.6 and / 0.5.
+  // The leak may at most double them.
   const double noise_only = 0.4 * kEps * std::sqrt(12.0 / 160.0) * std::hypot(1 / 0.6, 1 / 0.5);
   EXPECT_LT(with_cut, 2.0 * noise_only);
 }

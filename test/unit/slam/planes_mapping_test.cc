@@ -281,8 +281,9 @@ TEST(PlaneMapper, CullsOwnedLandmarksThatLeftTheirPlane) {
 TEST(PlaneMapper, ProjectsOnlyWhatStillReprojects) {
   auto generator = test_generator();
   Wall wall(generator);
-  // Within eps_d = 0.04 of the wall: brought onto it along the normal it moves in the image by about
-  // 525 * 0.48 * 0.037 / 1.97^2 = 2.4 px on either axis, beyond sqrt(5.991) = 2.45 px together.
+  // Within eps_d = 0.04 of the wall: brought onto it along the normal it moves in the image by
+  // about 525 * 0.48 * 0.037 / 1.97^2 = 2.4 px on either axis, beyond sqrt(5.991) = 2.45 px
+  // together.
   const Vector3d off_axis(0.48, 0.48, 1.963);
   const LandmarkId refused = wall.builder.add_landmark(off_axis, wall.views, 1);
   const LandmarkId central = wall.builder.add_landmark({0.05, 0.0, 1.98}, wall.views, 1);
