@@ -6,6 +6,8 @@ preset=${1:-release}
 shift || true
 launcher=()
 if command -v ccache >/dev/null; then
+  # Clones in other folders share what was compiled.
+  export CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=1
   launcher=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
 fi
 [ "${CI:-}" = true ] && launcher+=(-DPLANECAST_WERROR=ON)
