@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "commands.h"
+#include "app/commands.h"
 #include "engine/evaluate/overlay.h"
 #include "engine/evaluate/planes.h"
 #include "engine/evaluate/trajectory.h"
@@ -12,7 +12,7 @@
 #include "engine/pipeline/reconstruction_io.h"
 #include "engine/sequence/groundtruth.h"
 #include "engine/user_error.h"
-#include "options.h"
+#include "app/options.h"
 
 namespace planecast::app {
 namespace {

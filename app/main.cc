@@ -4,10 +4,10 @@
 #include <exception>
 #include <string>
 
-#include "commands.h"
-#include "console.h"
+#include "app/commands.h"
+#include "app/console.h"
 #include "engine/user_error.h"
-#include "options.h"
+#include "app/options.h"
 
 namespace {
 

@@ -3,11 +3,11 @@
 #include <cstdio>
 #include <memory>
 
-#include "commands.h"
+#include "app/commands.h"
 #include "engine/output/png.h"
 #include "engine/pipeline/turntable.h"
 #include "engine/user_error.h"
-#include "options.h"
+#include "app/options.h"
 #include "render/gltf/import.h"
 
 namespace planecast::app {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "console.h"
+#include "app/console.h"
 #include "engine/pipeline/reconstruction.h"
 #include "engine/pipeline/track_sequence.h"
 #include "engine/sequence/sequence.h"

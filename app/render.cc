@@ -1,9 +1,9 @@
 #include <memory>
 
-#include "commands.h"
+#include "app/commands.h"
 #include "engine/pipeline/reconstruction_io.h"
 #include "engine/user_error.h"
-#include "rendering.h"
+#include "app/rendering.h"
 
 namespace planecast::app {
 namespace {

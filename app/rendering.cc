@@ -1,4 +1,4 @@
-#include "rendering.h"
+#include "app/rendering.h"
 
 #include <cstdio>
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "engine/pipeline/render_sequence.h"
-#include "options.h"
+#include "app/options.h"
 
 namespace planecast::app {
 

@@ -2,12 +2,12 @@
 #include <cstdio>
 #include <memory>
 
-#include "commands.h"
+#include "app/commands.h"
 #include "engine/output/atomic_file.h"
 #include "engine/output/report.h"
 #include "engine/pipeline/reconstruction_io.h"
 #include "engine/user_error.h"
-#include "rendering.h"
+#include "app/rendering.h"
 
 namespace planecast::app {
 namespace {

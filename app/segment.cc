@@ -2,12 +2,12 @@
 #include <memory>
 #include <opencv2/core.hpp>
 
-#include "commands.h"
+#include "app/commands.h"
 #include "engine/output/atomic_file.h"
 #include "engine/output/png.h"
 #include "engine/output/trajectory.h"
 #include "engine/user_error.h"
-#include "options.h"
+#include "app/options.h"
 #include "slam/segmentation/plane_segmenter.h"
 
 namespace planecast::app {

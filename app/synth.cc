@@ -1,9 +1,9 @@
 #include <memory>
 
-#include "commands.h"
+#include "app/commands.h"
 #include "engine/sequence/synth.h"
 #include "engine/user_error.h"
-#include "options.h"
+#include "app/options.h"
 
 namespace planecast::app {
 namespace {

@@ -1,9 +1,9 @@
 #include <memory>
 
-#include "commands.h"
+#include "app/commands.h"
 #include "engine/output/atomic_file.h"
 #include "engine/pipeline/reconstruction_io.h"
-#include "options.h"
+#include "app/options.h"
 
 namespace planecast::app {
 namespace {
