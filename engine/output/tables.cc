@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "engine/output/atomic_file.h"
+#include "engine/output/csv.h"
 #include "engine/output/trajectory.h"
 #include "engine/user_error.h"
 
@@ -29,19 +30,6 @@ constexpr std::array<const char*, 11> kPaperRows = {kTracking,
                                                     "Plane Re-estimation",
                                                     "Point-Plane Refinement",
                                                     "Local BA"};
-
-/// RFC 4180, with line breaks made spaces: one frame stays one line.
-std::string csv_field(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  std::replace(text.begin(), text.end(), '\r', ' ');
-  if (text.find_first_of(",\"") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + '"';
-}
 
 std::vector<std::string> split_csv(std::string_view line) {
   std::vector<std::string> fields(1);
@@ -164,6 +152,8 @@ void write_times_csv(const Reconstruction& reconstruction, const std::filesystem
   }
   write_file(path, text);
 }
+
+std::vector<std::string> paper_timing_names() { return {kPaperRows.begin(), kPaperRows.end()}; }
 
 std::vector<TimingRow> timing_rows(const Reconstruction& reconstruction) {
   std::vector<TimingRow> rows;

@@ -25,6 +25,9 @@ struct TimingRow {
   Statistics ms;  ///< count 0: the stage never ran
 };
 
+/// Names of the rows of the paper's Table 2, in its order.
+std::vector<std::string> paper_timing_names();
+
 /// The rows of the paper's Table 2 in its order, then every other stage. A row's samples are the
 /// keyframes' (mapping_times) or, where there are none, the frames' (frame_times) under its name;
 /// "Tracking" without samples of its own is the sum of a frame's stages but for the segmentation.

@@ -52,6 +52,12 @@ slam::SystemOptions system_options(const TrackSequenceOptions& options, bool rgb
   } else if (options.plane_merge != "default") {
     throw UserError("--plane-merge " + options.plane_merge + ": expected default or paper");
   }
+  if (options.plane_fit != "graph-cut" && options.plane_fit != "plain") {
+    throw UserError("--plane-fit " + options.plane_fit + ": expected graph-cut or plain");
+  }
+  result.mapping.planes.graph_cut = options.plane_fit == "graph-cut";
+  result.mapping.map_planes = options.map_planes;
+  result.refine_jointly = options.refine_jointly;
   return result;
 }
 
