@@ -120,6 +120,7 @@ SynthOptions ConfigReader::synth(YamlMap map) const {
   options.fps = map.number("fps").value_or(options.fps);
   options.seed = static_cast<std::uint64_t>(map.integer("seed").value_or(1));
   options.effects = map.boolean("effects").value_or(options.effects);
+  if (const auto lens = map.choice("lens", synthetic_lens_names())) options.lens = *lens;
   if (map.has("frames") && options.frames < 1) map.fail("frames", "'frames' must be positive");
   map.finish();
   return options;

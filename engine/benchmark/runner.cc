@@ -41,15 +41,17 @@ std::vector<std::string> synth_arguments(const SynthOptions& synth, const fs::pa
   if (synth.frames > 0) {
     arguments.insert(arguments.end(), {"--count", std::to_string(synth.frames)});
   }
+  if (synth.lens != "none") arguments.insert(arguments.end(), {"--lens", synth.lens});
   if (!synth.effects) arguments.emplace_back("--no-effects");
   return arguments;
 }
 
 /// The name of a made sequence tells all that it was made from.
 std::string cache_name(const SynthOptions& synth) {
-  return file_name(fmt::format("{}-{}x{}-{}fps-{}-seed{}{}", synth.name, synth.width, synth.height,
-                               synth.fps, synth.frames > 0 ? std::to_string(synth.frames) : "all",
-                               synth.seed, synth.effects ? "" : "-clean"));
+  return file_name(
+      fmt::format("{}-{}x{}-{}fps-{}-seed{}{}{}", synth.name, synth.width, synth.height, synth.fps,
+                  synth.frames > 0 ? std::to_string(synth.frames) : "all", synth.seed,
+                  synth.lens == "none" ? "" : "-" + synth.lens, synth.effects ? "" : "-clean"));
 }
 
 std::string reason_of(const ChildResult& child) {

@@ -1,6 +1,7 @@
 #include "engine/pipeline/track_sequence.h"
 
 #include <algorithm>
+#include <chrono>
 #include <future>
 #include <memory>
 #include <utility>
@@ -71,7 +72,7 @@ class FramesAhead {
   struct Prepared {
     std::optional<slam::ImageFeatures> image;  ///< nothing: unreadable
     std::string error;
-    double milliseconds = 0.0;
+    double milliseconds = 0.0;  ///< without reading
   };
 
   void request(int index, bool initialised) {
@@ -84,7 +85,12 @@ class FramesAhead {
   Prepared prepare(int index, bool initialised) const {
     Prepared prepared;
     try {
-      prepared.image = system_.prepare(sequence_.read(index), initialised);
+      const slam::FrameInput frame = sequence_.read(index);
+      const auto start = std::chrono::steady_clock::now();
+      prepared.image = system_.prepare(frame, initialised);
+      const std::chrono::duration<double, std::milli> taken =
+          std::chrono::steady_clock::now() - start;
+      prepared.milliseconds = taken.count();
     } catch (const UserError& error) {
       prepared.error = error.what();
     }
@@ -187,6 +193,8 @@ void TwoPassTracker::first_pass() {
     record.timestamp =
         prepared.image ? prepared.image->timestamp : sequence_.timestamp(record.index);
     if (prepared.image) {
+      times_[static_cast<std::size_t>(position)].emplace_back("Feature Extraction",
+                                                              prepared.milliseconds);
       record_first(position, system_.track(*prepared.image));
     } else {
       if (!options_.skip_unreadable) throw UserError(prepared.error);
