@@ -14,6 +14,7 @@ struct Keyframe {
   double timestamp = 0.0;
   Pose cam_from_world = Pose::Identity();
   std::shared_ptr<const Features> features;  ///< shared between snapshots, never changed
+  std::shared_ptr<const ImagePyramid> pyramid;  ///< raw pixels; shared; may be null
   std::vector<LandmarkId> landmarks;         ///< per keypoint; kNone where there is none
   std::vector<int> labels;                   ///< per keypoint: plane instance mask label, 0 = none
   cv::Mat depth;          ///< CV_32F metres, raw pixels, may be empty; shared, never written
