@@ -35,6 +35,8 @@ SystemOptions with_common_values(SystemOptions options) {
   options.track.patches.levels = levels;
   options.mapping.describe.patches.levels = levels;
   options.mapping.describe.localise = options.track.localise;
+  options.mapping.search.points = options.mapping.points;
+  options.mapping.search_by_patches = options.track.front_end == FrontEnd::kPatches;
   return options;
 }
 
