@@ -21,7 +21,7 @@ namespace {
 
 /// Steps along an epipolar line, in pixels of the level: a patch's correlation falls over about
 /// two.
-constexpr float kStepPx = 0.7F;
+constexpr double kStepPx = 0.7;
 /// Correlations so near to the best place, in steps, belong to the same peak.
 constexpr int kPeakSteps = 4;
 /// How far alignment may lead from the best step, in pixels of the level.
@@ -29,6 +29,7 @@ constexpr float kMaxSettlePx = 2.0F;
 
 struct InverseDepths {
   double least = 0.0;
+  double median = 0.0;
   double most = 0.0;
 };
 
@@ -51,6 +52,7 @@ std::optional<InverseDepths> depth_range(const Map& map, const Keyframe& keyfram
   std::sort(depths.begin(), depths.end());
   const std::size_t tail = depths.size() / 20;
   return InverseDepths{1.0 / (options.farthest_depth * depths[depths.size() - 1 - tail]),
+                       1.0 / depths[depths.size() / 2],
                        1.0 / (options.nearest_depth * depths[tail])};
 }
 
@@ -83,12 +85,16 @@ class EpipolarSearch {
   std::optional<Sighting> find(int k) {
     const Keypoint& keypoint = neighbour_.features->keypoints[static_cast<std::size_t>(k)];
     const Eigen::Vector3d ray = camera_.ray(keypoint.pixel.cast<double>());
-    const Eigen::Vector3d middle = ray / std::sqrt(range_.least * range_.most);
+    const Eigen::Vector3d middle = ray / range_.median;
     const auto view =
         change_of_view(camera_, middle, Eigen::Vector3d::UnitZ(), cam_from_neighbour_);
     if (!view) return std::nullopt;
-    const std::optional<Line> line = line_of(ray);
+    std::optional<Line> line = line_of(ray);
     if (!line) return std::nullopt;
+    const double reach = kStepPx * options_.max_steps *
+                         options_.points.levels.scale(keypoint.octave) *
+                         (1 << options_.coarser_levels);
+    line->shorten(reach);
     // A long line is searched at a coarser level, and the place then followed to the finer ones.
     std::optional<Eigen::Vector2f> raw;
     for (int coarser = coarser_levels(*line, keypoint); coarser >= 0; --coarser) {
@@ -104,7 +110,6 @@ class EpipolarSearch {
       if (!settled || settled->correlation < options_.min_correlation) return std::nullopt;
       raw = from_level(settled->pixel, patch->level);
     }
-    if (!raw) return std::nullopt;
     return sighting(k, keypoint, *raw);
   }
 
@@ -115,36 +120,45 @@ class EpipolarSearch {
 
   /// Undistorted pixels between which a keypoint's point lies in the new keyframe.
   struct Line {
-    Eigen::Vector2d begin;
-    Eigen::Vector2d end;
+    Eigen::Vector2d begin;   ///< of the farthest depth
+    Eigen::Vector2d middle;  ///< of the median depth
+    Eigen::Vector2d end;     ///< of the nearest
     double length() const { return (end - begin).norm(); }
+    /// Cuts off what is farther than half of `longest` from the middle.
+    void shorten(double longest) {
+      if (length() <= longest) return;
+      const Eigen::Vector2d along = (end - begin).normalized();
+      const double before = std::min((middle - begin).norm(), longest / 2.0);
+      const double after = std::min((end - middle).norm(), longest / 2.0);
+      begin = middle - before * along;
+      end = middle + after * along;
+    }
   };
 
   std::optional<Line> line_of(const Eigen::Vector3d& ray) const {
     const Eigen::Vector3d turned = cam_from_neighbour_.linear() * ray;
     const Eigen::Vector3d& shift = cam_from_neighbour_.translation();
     const Eigen::Vector3d far_point = turned + range_.least * shift;
+    const Eigen::Vector3d middle = turned + range_.median * shift;
     Eigen::Vector3d near_point = turned + range_.most * shift;
     constexpr double kMinZ = 0.05;  // of the ray's length: in front of the camera
-    if (!(far_point.z() > kMinZ)) return std::nullopt;
+    if (!(far_point.z() > kMinZ && middle.z() > kMinZ)) return std::nullopt;
     if (near_point.z() < kMinZ) near_point = turned + (kMinZ - turned.z()) / shift.z() * shift;
-    return Line{camera_.project(far_point), camera_.project(near_point)};
+    return Line{camera_.project(far_point), camera_.project(middle), camera_.project(near_point)};
   }
 
-  /// Levels above the keypoint's own at which the line is short enough; -1 where none is.
+  /// Levels above the keypoint's own at which the line is short enough.
   int coarser_levels(const Line& line, const Keypoint& keypoint) const {
-    double steps = line.length() /
-                   (static_cast<double>(kStepPx) * options_.points.levels.scale(keypoint.octave));
-    for (int coarser = 0; coarser <= options_.coarser_levels; ++coarser, steps /= 2.0) {
-      if (steps < options_.max_steps) return coarser;
-    }
-    return -1;
+    double steps = line.length() / (kStepPx * options_.points.levels.scale(keypoint.octave));
+    int coarser = 0;
+    for (; coarser < options_.coarser_levels && steps > options_.max_steps; ++coarser) steps /= 2.0;
+    return coarser;
   }
 
   /// Raw pixel of the best correlation along the line.
   std::optional<Eigen::Vector2f> search(const Line& line, const WarpedPatch& patch) {
     const double length = line.length() / (1 << patch.level);
-    const int steps = static_cast<int>(std::ceil(length / static_cast<double>(kStepPx))) + 1;
+    const int steps = static_cast<int>(std::ceil(length / kStepPx)) + 1;
     places_.clear();
     scores_.clear();
     for (int s = 0; s <= steps; ++s) {

@@ -12,8 +12,8 @@ namespace planecast::slam {
 struct SearchPointsOptions {
   int neighbours = 4;           ///< keyframes whose keypoints are looked for
   int max_points = 400;         ///< keypoints of a keyframe that are looked for, strongest first
-  double nearest_depth = 0.4;   ///< of the 5th percentile of the keyframe's depths
-  double farthest_depth = 3.0;  ///< of the 95th
+  double nearest_depth = 0.5;   ///< of the 5th percentile of the keyframe's depths
+  double farthest_depth = 2.0;  ///< of the 95th
   int max_steps = 50;           ///< along an epipolar line, at the level where it is searched
   int coarser_levels = 2;       ///< above a keypoint's own at which a long line may be searched
   double min_correlation = 0.8;
