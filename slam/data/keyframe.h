@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "slam/data/bag_of_words.h"
 #include "slam/data/frame.h"
 #include "slam/data/types.h"
 
@@ -19,6 +20,10 @@ struct Keyframe {
   cv::Mat depth;          ///< CV_32F metres, raw pixels, may be empty; shared, never written
   cv::Mat label_image;    ///< CV_16U plane instances, raw pixels, may be empty; shared
   KeyframeId parent = kNone;                 ///< spanning tree
+  /// What one unit of length measured from this keyframe at its insertion is worth in the map now: a
+  /// closed loop gives each part of a monocular map its own new scale.
+  double unit = 1.0;
+  std::shared_ptr<const BagOfWords> words;   ///< for place recognition; shared, never changed
 
   Eigen::Vector3d centre_world() const { return cam_from_world.inverse().translation(); }
 };

@@ -71,7 +71,7 @@ KeyframeReport KeyframeMapper::start(Map& map, const std::vector<ImageFeatures>&
 
 KeyframeId KeyframeMapper::put_keyframe(Map& map, const KeyframeJob& job, StageTimes& times) {
   // The map may have moved since the tracker saw it: the pose goes along with its reference.
-  const Pose cam_from_world = job.cam_from_reference * map.keyframe_pose(job.reference);
+  const Pose cam_from_world = map.from_keyframe(job.cam_from_reference, job.reference);
   Keyframe keyframe = make_keyframe(job.image, cam_from_world, map);
   const KeyframeId id = keyframe.id;
   keyframe.parent = map.living_ancestor(job.reference);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "slam/data/camera.h"
 #include "slam/data/map.h"
 #include "slam/stages/initialise.h"
@@ -43,6 +45,11 @@ void create_landmarks(Map& map, KeyframeId keyframe, const Camera& camera, bool 
 /// Merges duplicates between `keyframe` and its neighbours, both ways.
 void fuse_landmarks(Map& map, KeyframeId keyframe, const Camera& camera, bool rgbd,
                     const PointMappingOptions& options, PointMappingStats& stats);
+
+/// Projects `candidates` into `keyframe` and joins each with what it finds there.
+void fuse_landmarks_into(Map& map, const std::vector<LandmarkId>& candidates, KeyframeId keyframe,
+                         const Camera& camera, const PointMappingOptions& options,
+                         PointMappingStats& stats);
 
 /// Removes keyframes about `keyframe` most of whose landmarks others see as well. Never the first two, nor
 /// `keyframe` itself.
