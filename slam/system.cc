@@ -10,6 +10,14 @@
 namespace planecast::slam {
 namespace {
 
+PrepareOptions prepare_options(const SystemOptions& options) {
+  PrepareOptions prepare;
+  prepare.orb = options.orb;
+  prepare.rgbd = options.rgbd;
+  prepare.max_keypoint_depth_m = options.max_keypoint_depth_m;
+  return prepare;
+}
+
 /// One set of pyramid levels and one seed for every stage.
 SystemOptions with_common_values(SystemOptions options) {
   const ScaleLevels levels = options.orb.levels;
@@ -29,33 +37,20 @@ SystemOptions with_common_values(SystemOptions options) {
   options.loops.verify.levels = levels;
   options.loops.points = options.mapping.points;
   options.loops.bundle = options.mapping.bundle;
+  options.mapping.prepare = prepare_options(options);
+  options.track.max_keypoint_depth_m = options.max_keypoint_depth_m;
+  options.track.patches.levels = levels;
+  options.mapping.describe.patches.levels = levels;
+  options.mapping.describe.localise = options.track.localise;
   return options;
-}
-
-/// Depth at a raw pixel; 0 where the 3x3 window disagrees, as at the edge of an object.
-float depth_at(const cv::Mat& depth, const Eigen::Vector2f& raw, double max_depth_m) {
-  const int x = static_cast<int>(std::lround(raw.x()));
-  const int y = static_cast<int>(std::lround(raw.y()));
-  if (x < 1 || y < 1 || x >= depth.cols - 1 || y >= depth.rows - 1) return 0.0F;
-  const float centre = depth.at<float>(y, x);
-  if (!(centre > 0.0F) || centre > static_cast<float>(max_depth_m)) return 0.0F;
-  const float slack = 0.03F * centre;
-  for (int dy = -1; dy <= 1; ++dy) {
-    for (int dx = -1; dx <= 1; ++dx) {
-      const float other = depth.at<float>(y + dy, x + dx);
-      if (other > 0.0F && std::abs(other - centre) > slack) return 0.0F;
-    }
-  }
-  return centre;
 }
 
 PoseEstimate estimate_of_keyframe(const Keyframe& keyframe) {
   PoseEstimate estimate;
   estimate.cam_from_world = keyframe.cam_from_world;
   estimate.matches = keyframe.landmarks;
-  estimate.inliers = static_cast<int>(
-      std::count_if(estimate.matches.begin(), estimate.matches.end(),
-                    [](LandmarkId id) { return id != kNone; }));
+  estimate.inliers = static_cast<int>(std::count_if(
+      estimate.matches.begin(), estimate.matches.end(), [](LandmarkId id) { return id != kNone; }));
   return estimate;
 }
 
@@ -65,7 +60,8 @@ System::System(const SystemOptions& options, const Camera& camera,
                std::unique_ptr<PlaneSegmenter> segmenter)
     : options_(with_common_values(options)),
       camera_(camera),
-      extractor_(std::make_unique<OrbExtractor>(options_.orb)),
+      preparer_(std::make_unique<ImagePreparer>(options_.mapping.prepare, camera)),
+      tracker_preparer_(std::make_unique<ImagePreparer>(options_.mapping.prepare, camera)),
       initialiser_(options_.initialise, camera),
       tracker_(options_.track, camera, options_.rgbd),
       mapper_(options_.mapping, camera, std::move(segmenter)) {
@@ -80,22 +76,11 @@ System::~System() {
 }
 
 ImageFeatures System::prepare(const FrameInput& frame, bool initialised) const {
-  ImageFeatures image;
-  image.frame_index = frame.index;
-  image.timestamp = frame.timestamp;
-  image.grey_or_bgr = frame.image;
-  image.labels = frame.labels;
-  if (options_.rgbd) image.depth = frame.depth;
-  cv::Mat grey = frame.image;
-  if (frame.image.channels() == 3) cv::cvtColor(frame.image, grey, cv::COLOR_BGR2GRAY);
-  const int limit = initialised || options_.rgbd ? options_.orb.features : options_.initial_features;
-  auto features = std::make_shared<Features>(extractor_->extract(grey, camera_, limit));
-  if (!image.depth.empty()) {
-    for (Keypoint& keypoint : features->keypoints) {
-      keypoint.depth = depth_at(image.depth, keypoint.raw, options_.max_keypoint_depth_m);
-    }
+  ImageFeatures image = preparer_->read(frame);
+  if (!initialised || options_.track.front_end == FrontEnd::kOrb) {
+    preparer_->extract(
+        image, initialised || options_.rgbd ? options_.orb.features : options_.initial_features);
   }
-  image.features = std::move(features);
   return image;
 }
 
@@ -140,11 +125,10 @@ void System::start(const ImageFeatures& image, FrameTrack& result) {
   result.inliers = static_cast<int>(map().landmarks.size());
 }
 
-void System::hand_over(const ImageFeatures& image, const TrackResult& tracked,
-                       FrameTrack& result) {
+void System::hand_over(const ImageFeatures& image, const TrackResult& tracked, FrameTrack& result) {
   KeyframeJob job = std::exchange(next_job_, {});
   job.image = image;
-  job.matches = tracked.estimate.matches;
+  job.estimate = tracked.estimate;
   job.reference = tracked.reference;
   job.cam_from_reference = result.cam_from_reference;
   enqueue(image.frame_index, image.frame_index + options_.mapping_delay,
@@ -238,7 +222,23 @@ void System::take_over_all(FrameTrack& result) {
   }
 }
 
-FrameTrack System::track(const ImageFeatures& image) {
+/// Images that were prepared before the map was there have features; patches are tried first all
+/// the same.
+TrackResult System::track_in_map(ImageFeatures& image) {
+  if (options_.track.front_end == FrontEnd::kPatches) {
+    ImageFeatures bare = image;
+    bare.features = nullptr;
+    TrackResult tracked = tracker_.track(bare, map());
+    if (!tracked.needs_features) {
+      image = std::move(bare);
+      return tracked;
+    }
+    if (image.features == nullptr) tracker_preparer_->extract(image);
+  }
+  return tracker_.track(image, map());
+}
+
+FrameTrack System::track(ImageFeatures image) {
   FrameTrack result;
   take_over_due(image.frame_index, result);
   enqueue_open_loop(image.frame_index);
@@ -249,12 +249,15 @@ FrameTrack System::track(const ImageFeatures& image) {
     result.restarted = true;
   }
   if (!initialised()) {
+    // After a restart the images on the way have none yet.
+    if (image.features == nullptr) tracker_preparer_->extract(image, options_.initial_features);
     start(image, result);
     return result;
   }
+  const double prepare_ms = image.prepare_ms;
   Stopwatch watch;
-  const TrackResult tracked = tracker_.track(image, map());
-  result.times.emplace_back("Tracking", watch.lap_ms());
+  const TrackResult tracked = track_in_map(image);
+  result.times.emplace_back("Tracking", prepare_ms + watch.lap_ms());
   if (!tracked.tracked) {
     ++lost_frames_;
     result.state = TrackState::kLost;
@@ -265,9 +268,8 @@ FrameTrack System::track(const ImageFeatures& image) {
   const PoseEstimate& estimate = tracked.estimate;
   next_job_.visible.insert(next_job_.visible.end(), estimate.visible.begin(),
                            estimate.visible.end());
-  for (const LandmarkId id : estimate.matches) {
-    if (id != kNone) next_job_.found.push_back(id);
-  }
+  const std::vector<LandmarkId> found = supporting_landmarks(estimate);
+  next_job_.found.insert(next_job_.found.end(), found.begin(), found.end());
   result.state = TrackState::kTracked;
   result.inliers = estimate.inliers;
   result.cam_from_world = estimate.cam_from_world;
@@ -305,10 +307,34 @@ FinishResult System::finish() {
   return result;
 }
 
+std::optional<PoseEstimate> System::localise_by_patches(const ImageFeatures& image,
+                                                        const Pose& prior_cam_from_world) const {
+  const TrackOptions& options = options_.track;
+  std::vector<LandmarkId> everywhere;
+  for (const Landmark& landmark : map().landmarks) everywhere.push_back(landmark.id);
+  PatchMatchOptions patches = options.patches;
+  patches.max_matches = options_.localise_matches;
+  const PatchMatches found =
+      match_patches(map(), camera_, *image.pyramid, prior_cam_from_world, everywhere, patches);
+  PoseEstimate estimate =
+      optimise_patches(map(), camera_, image.depth, options_.max_keypoint_depth_m,
+                       prior_cam_from_world, found.matches);
+  if (estimate.inliers < options.min_inliers ||
+      estimate.inliers < options.min_patch_share * static_cast<double>(found.tried.size())) {
+    return std::nullopt;
+  }
+  return estimate;
+}
+
 std::optional<PoseEstimate> System::localise(
-    const ImageFeatures& image, const std::optional<Pose>& prior_cam_from_world) const {
+    ImageFeatures image, const std::optional<Pose>& prior_cam_from_world) const {
   if (!initialised()) return std::nullopt;
   const LocaliseOptions& options = options_.track.localise;
+  if (prior_cam_from_world && options_.track.front_end == FrontEnd::kPatches) {
+    std::optional<PoseEstimate> estimate = localise_by_patches(image, *prior_cam_from_world);
+    if (estimate) return estimate;
+  }
+  if (image.features == nullptr) tracker_preparer_->extract(image);
   if (prior_cam_from_world) {
     PoseEstimate prior;
     prior.cam_from_world = *prior_cam_from_world;
@@ -318,7 +344,8 @@ std::optional<PoseEstimate> System::localise(
     PoseEstimate estimate =
         search_local_map(map(), camera_, *image.features, prior, everywhere, 2.0, options);
     if (estimate.inliers >= options_.track.min_inliers) {
-      estimate = search_local_map(map(), camera_, *image.features, estimate, everywhere, 1.0, options);
+      estimate =
+          search_local_map(map(), camera_, *image.features, estimate, everywhere, 1.0, options);
       if (estimate.inliers >= options_.track.min_inliers) return estimate;
     }
   }

@@ -59,6 +59,7 @@ Keyframe make_keyframe(const ImageFeatures& image, const Pose& cam_from_world, c
   keyframe.timestamp = image.timestamp;
   keyframe.cam_from_world = cam_from_world;
   keyframe.features = image.features;
+  keyframe.pyramid = image.pyramid;
   keyframe.landmarks.assign(image.features->keypoints.size(), kNone);
   keyframe.depth = image.depth;
   keyframe.label_image = image.labels;

@@ -10,31 +10,22 @@
 #include "slam/data/frame.h"
 #include "slam/data/map.h"
 #include "slam/geometry/two_view.h"
+#include "slam/stages/prepare_image.h"
 
 namespace planecast::slam {
 
 /// Defaults from ORB-SLAM (Mur-Artal 2015, section IV) but where noted.
 struct InitialiseOptions {
-  int min_features = 100;           ///< in the reference image
-  int min_matches = 100;            ///< else the reference is replaced
-  double window_px = 100.0;         ///< at 640 px image width, scaled with it
-  double homography_share = 0.45;   ///< H when S_H / (S_H + S_F) is above it [P]
-  int max_reference_age = 90;       ///< frames after which a reference without parallax is replaced
+  int min_features = 100;          ///< in the reference image
+  int min_matches = 100;           ///< else the reference is replaced
+  double window_px = 100.0;        ///< at 640 px image width, scaled with it
+  double homography_share = 0.45;  ///< H when S_H / (S_H + S_F) is above it [P]
+  int max_reference_age = 90;      ///< frames after which a reference without parallax is replaced
   int min_landmarks = 50;
-  double max_rms_px = 2.0;          ///< of the two-view bundle: a worse start is no start
+  double max_rms_px = 2.0;  ///< of the two-view bundle: a worse start is no start
   TwoViewOptions two_view;
   std::uint64_t seed = 1;
   ScaleLevels levels;
-};
-
-/// One image with its features, as the tracker holds it.
-struct ImageFeatures {
-  int frame_index = 0;
-  double timestamp = 0.0;
-  std::shared_ptr<const Features> features;
-  cv::Mat grey_or_bgr;
-  cv::Mat depth;
-  cv::Mat labels;
 };
 
 struct InitialiseResult {
@@ -44,9 +35,9 @@ struct InitialiseResult {
   int matches = 0;
 };
 
-/// Monocular start: H by graph-cut RANSAC and F by the 8-point algorithm in parallel, the relative pose
-/// of the better model, two keyframes, bundle adjustment, median depth 1 (paper, "System Initialization
-/// and Map Initialization").
+/// Monocular start: H by graph-cut RANSAC and F by the 8-point algorithm in parallel, the relative
+/// pose of the better model, two keyframes, bundle adjustment, median depth 1 (paper, "System
+/// Initialization and Map Initialization").
 class MonoInitialiser {
  public:
   MonoInitialiser(const InitialiseOptions& options, const Camera& camera);

@@ -13,12 +13,12 @@ struct PointMappingOptions {
   int neighbours_mono = 20;
   int neighbours_rgbd = 10;
   double min_found_ratio = 0.25;
-  int trial_keyframes = 3;            ///< a landmark is on trial for so many keyframes
+  int trial_keyframes = 3;  ///< a landmark is on trial for so many keyframes
   double min_parallax_cosine = 0.9998;
   double chi2_mono = 5.991;
-  double min_baseline_share = 0.01;   ///< of the median depth (mono); RGB-D: 0.08 m
+  double min_baseline_share = 0.01;  ///< of the median depth (mono); RGB-D: 0.08 m
   double min_baseline_m = 0.08;
-  double redundant_share = 0.9;       ///< keyframe culling
+  double redundant_share = 0.9;  ///< keyframe culling
   int redundant_observers = 3;
   double max_landmark_depth_m = 6.0;  ///< RGB-D: depth beyond it is too noisy to make landmarks
   ScaleLevels levels;
@@ -36,8 +36,8 @@ struct PointMappingStats {
 void cull_landmarks(Map& map, KeyframeId keyframe, bool rgbd, const PointMappingOptions& options,
                     PointMappingStats& stats);
 
-/// New landmarks of `keyframe` with its covisible keyframes; in RGB-D also from depth where a keypoint
-/// still has none. `image` gives the colours.
+/// New landmarks of `keyframe` with its covisible keyframes; in RGB-D also from depth where a
+/// keypoint still has none. `image` gives the colours.
 void create_landmarks(Map& map, KeyframeId keyframe, const Camera& camera, bool rgbd,
                       const cv::Mat& image, const PointMappingOptions& options,
                       PointMappingStats& stats);
@@ -51,8 +51,8 @@ void fuse_landmarks_into(Map& map, const std::vector<LandmarkId>& candidates, Ke
                          const Camera& camera, const PointMappingOptions& options,
                          PointMappingStats& stats);
 
-/// Removes keyframes about `keyframe` most of whose landmarks others see as well. Never the first two, nor
-/// `keyframe` itself.
+/// Removes keyframes about `keyframe` most of whose landmarks others see as well. Never the first
+/// two, nor `keyframe` itself.
 void cull_keyframes(Map& map, KeyframeId keyframe, const PointMappingOptions& options,
                     PointMappingStats& stats);
 
