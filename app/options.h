@@ -43,6 +43,7 @@ struct TrackingOptions {
   std::string up;  ///< x,y,z
   std::string plane_merge = "default";
   bool causal = false;
+  bool no_loop_closing = false;
 
   engine::TrackSequenceOptions resolve(const CommonOptions& common,
                                        const InputOptions& input) const;

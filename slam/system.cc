@@ -39,6 +39,13 @@ SystemOptions with_common_values(SystemOptions options) {
   options.mapping.points.levels = levels;
   options.mapping.bundle.levels = levels;
   options.mapping.planes.seed = options.seed;
+  options.track.relocalise.vocabulary = options.vocabulary;
+  options.loops.rgbd = options.rgbd;
+  options.loops.verify.with_scale = !options.rgbd;
+  options.loops.verify.seed = options.seed;
+  options.loops.verify.levels = levels;
+  options.loops.points = options.mapping.points;
+  options.loops.bundle = options.mapping.bundle;
   options.mapping.prepare = prepare_options(options);
   options.track.max_keypoint_depth_m = options.max_keypoint_depth_m;
   options.track.patches.levels = levels;
@@ -68,9 +75,14 @@ System::System(const SystemOptions& options, const Camera& camera,
       tracker_preparer_(std::make_unique<ImagePreparer>(options_.mapping.prepare, camera)),
       initialiser_(options_.initialise, options_.mapping.prepare, camera),
       tracker_(options_.track, camera, options_.rgbd),
-      mapper_(options_.mapping, camera, std::move(segmenter)) {}
+      mapper_(options_.mapping, camera, std::move(segmenter)) {
+  if (options_.close_loops && options_.vocabulary != nullptr) {
+    loop_finder_.emplace(options_.loops, camera_, options_.vocabulary);
+  }
+}
 
 System::~System() {
+  if (open_loop_) open_loop_->correction.wait();
   for (const InFlight& flight : in_flight_) flight.result.wait();
 }
 
@@ -84,13 +96,14 @@ ImageFeatures System::prepare(const FrameInput& frame, bool initialised) const {
 }
 
 void System::restart() {
-  StageTimes ignored;
-  while (!in_flight_.empty()) take_over_due(in_flight_.back().visible_at, ignored);
+  FrameTrack ignored;
+  take_over_all(ignored);
   working_map_ = Map();
   visible_map_ = std::make_shared<const Map>();
   initialiser_.reset();
   tracker_ = Tracker(options_.track, camera_, options_.rgbd);
   mapper_.reset();
+  if (loop_finder_) loop_finder_->reset();
   next_job_ = {};
   lost_frames_ = 0;
 }
@@ -112,6 +125,7 @@ void System::start(ImageFeatures& image, FrameTrack& result) {
   images.push_back(image);
   const KeyframeReport report = mapper_.start(working_map_, images);
   result.mapping_times = report.times;
+  if (options_.vocabulary != nullptr) describe_keyframes(working_map_, *options_.vocabulary);
   visible_map_ = std::make_shared<const Map>(working_map_);
   const KeyframeId newest = map().keyframes.next_id() - 1;
   tracker_.start(image, estimate_of_keyframe(map().keyframes.at(newest)), newest);
@@ -128,39 +142,94 @@ void System::hand_over(const ImageFeatures& image, const TrackResult& tracked, F
   job.estimate = tracked.estimate;
   job.reference = tracked.reference;
   job.cam_from_reference = result.cam_from_reference;
-  const std::shared_future<Mapped> earlier =
-      in_flight_.empty() ? std::shared_future<Mapped>() : in_flight_.back().result;
-  InFlight flight;
-  flight.visible_at = image.frame_index + options_.mapping_delay;
-  if (!in_flight_.empty()) {
-    flight.visible_at = std::max(flight.visible_at, in_flight_.back().visible_at + 1);
-  }
-  flight.result = std::async(options_.threads > 1 ? std::launch::async : std::launch::deferred,
-                             [this, earlier, job = std::move(job)] {
-                               if (earlier.valid()) earlier.wait();
-                               Mapped mapped;
-                               mapped.report = mapper_.insert(working_map_, job);
-                               mapped.map = std::make_shared<const Map>(working_map_);
-                               return mapped;
-                             })
-                      .share();
-  in_flight_.push_back(std::move(flight));
+  enqueue(image.frame_index, image.frame_index + options_.mapping_delay,
+          [this, job = std::move(job)] {
+            Mapped mapped;
+            mapped.report = mapper_.insert(working_map_, job);
+            if (loop_finder_) {
+              mapped.loop = loop_finder_->look(working_map_, mapped.report.keyframe);
+            } else if (options_.vocabulary != nullptr) {
+              describe_keyframes(working_map_, *options_.vocabulary);
+            }
+            return mapped;
+          });
   tracker_.keyframe_requested(image.frame_index);
   result.keyframe = true;
 }
 
-void System::take_over(InFlight flight, StageTimes& times) {
-  const Mapped& mapped = flight.result.get();
-  times.insert(times.end(), mapped.report.times.begin(), mapped.report.times.end());
-  visible_map_ = mapped.map;
-  tracker_.follow_map(map());
+void System::enqueue(int frame_index, int visible_at, MapJob job) {
+  std::shared_future<Mapped> earlier =
+      in_flight_.empty() ? std::shared_future<Mapped>() : in_flight_.back().result;
+  InFlight flight;
+  flight.inserted_at = frame_index;
+  flight.visible_at = visible_at;
+  if (!in_flight_.empty()) {
+    flight.visible_at = std::max(flight.visible_at, in_flight_.back().visible_at + 1);
+  }
+  flight.result =
+      std::async(options_.threads > 1 ? std::launch::async : std::launch::deferred,
+                 [this, earlier, job = std::move(job)]() mutable {
+                   // Let go of it, or each result would hold all before it, with their maps.
+                   if (earlier.valid()) std::exchange(earlier, {}).wait();
+                   Mapped mapped = job();
+                   mapped.map = std::make_shared<const Map>(working_map_);
+                   return mapped;
+                 })
+          .share();
+  in_flight_.push_back(std::move(flight));
 }
 
-void System::take_over_due(int frame_index, StageTimes& times) {
+void System::begin_loop(const Mapped& mapped, int inserted_at) {
+  open_loop_.emplace();
+  open_loop_->visible_at = inserted_at + options_.loop_delay;
+  open_loop_->correction =
+      std::async(options_.threads > 1 ? std::launch::async : std::launch::deferred,
+                 [this, map = mapped.map, match = *mapped.loop] {
+                   return correct_loop(*map, camera_, match, options_.loops);
+                 })
+          .share();
+}
+
+/// Queues the carrying over of the loop among the keyframes so that it is due when it should be.
+void System::enqueue_open_loop(int frame_index) {
+  if (!open_loop_ || frame_index + options_.mapping_delay < open_loop_->visible_at) return;
+  const OpenLoop loop = *std::exchange(open_loop_, std::nullopt);
+  enqueue(frame_index, loop.visible_at, [this, correction = loop.correction] {
+    Mapped mapped;
+    Stopwatch watch;
+    if (correction.get()) {
+      carry_over(*correction.get(), camera_, options_.loops, working_map_);
+      mapper_.follow_map(working_map_);
+      mapped.loop_closed = true;
+    }
+    loop_finder_->closed(working_map_);
+    mapped.report.times.emplace_back("Loop Closing", watch.lap_ms());
+    return mapped;
+  });
+}
+
+void System::take_over(InFlight flight, FrameTrack& result) {
+  const Mapped& mapped = flight.result.get();
+  result.mapping_times.insert(result.mapping_times.end(), mapped.report.times.begin(),
+                              mapped.report.times.end());
+  visible_map_ = mapped.map;
+  tracker_.follow_map(map());
+  result.loop_closed = result.loop_closed || mapped.loop_closed;
+  if (mapped.loop) begin_loop(mapped, flight.inserted_at);
+}
+
+void System::take_over_due(int frame_index, FrameTrack& result) {
   while (!in_flight_.empty() && in_flight_.front().visible_at <= frame_index) {
     InFlight flight = std::move(in_flight_.front());
     in_flight_.pop_front();
-    take_over(std::move(flight), times);
+    take_over(std::move(flight), result);
+  }
+}
+
+void System::take_over_all(FrameTrack& result) {
+  while (!in_flight_.empty() || open_loop_) {
+    if (in_flight_.empty()) enqueue_open_loop(open_loop_->visible_at);
+    take_over_due(in_flight_.back().visible_at, result);
   }
 }
 
@@ -182,7 +251,9 @@ TrackResult System::track_in_map(ImageFeatures& image) {
 
 FrameTrack System::track(ImageFeatures image) {
   FrameTrack result;
-  take_over_due(image.frame_index, result.mapping_times);
+  take_over_due(image.frame_index, result);
+  enqueue_open_loop(image.frame_index);
+  take_over_due(image.frame_index, result);
   if (lost_frames_ >= options_.restart_after_lost &&
       static_cast<int>(map().keyframes.size()) < options_.restart_keyframes) {
     restart();
@@ -215,16 +286,17 @@ FrameTrack System::track(ImageFeatures image) {
   result.cam_from_world = estimate.cam_from_world;
   result.reference = tracked.reference;
   result.cam_from_reference =
-      estimate.cam_from_world * map().keyframe_pose(tracked.reference).inverse();
+      map().relative_to_keyframe(estimate.cam_from_world, tracked.reference);
   if (tracked.want_keyframe) hand_over(image, tracked, result);
   return result;
 }
 
 FinishResult System::finish() {
   FinishResult result;
-  while (!in_flight_.empty()) {
-    take_over_due(in_flight_.back().visible_at, result.mapping_times);
-  }
+  FrameTrack last;
+  take_over_all(last);
+  result.mapping_times = std::move(last.mapping_times);
+  result.loop_closed = last.loop_closed;
   if (working_map_.keyframes.size() < 2) return result;
   BundleOptions bundle = options_.mapping.bundle;
   bundle.iterations = 20;

@@ -20,6 +20,7 @@ struct TrackSequenceOptions {
   std::optional<Eigen::Vector3d> up;  ///< unit, world; estimated where not given
   std::string plane_merge = "default";  ///< default | paper
   int features = 1000;
+  bool close_loops = true;
 };
 
 /// Called with (done, total) after each frame of either pass.

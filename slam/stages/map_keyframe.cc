@@ -37,6 +37,13 @@ void follow(const Map& map, PoseEstimate& estimate) {
   std::erase_if(estimate.patches, [](const PatchMatch& patch) { return patch.landmark == kNone; });
 }
 
+/// Nobody looks at a keyframe's depth and masks again once its planes are mapped, and they are most of
+/// its memory.
+void release_images(Keyframe& keyframe) {
+  keyframe.depth.release();
+  keyframe.label_image.release();
+}
+
 }  // namespace
 
 KeyframeMapper::KeyframeMapper(const KeyframeMapperOptions& options, const Camera& camera,
@@ -81,13 +88,14 @@ KeyframeReport KeyframeMapper::start(Map& map, const std::vector<ImageFeatures>&
     plane_mapper_.cull_non_planar(map, keyframe.id, report.planes);
     plane_mapper_.update(map, keyframe.id, report.planes);
   }
+  for (Keyframe& keyframe : map.keyframes) release_images(keyframe);
   report.times.emplace_back("Point-Plane Map Initialization", watch.lap_ms());
   return report;
 }
 
 KeyframeId KeyframeMapper::put_keyframe(Map& map, KeyframeJob& job, StageTimes& times) {
   // The map may have moved since the tracker saw it: the pose goes along with its reference.
-  job.estimate.cam_from_world = job.cam_from_reference * map.keyframe_pose(job.reference);
+  job.estimate.cam_from_world = map.from_keyframe(job.cam_from_reference, job.reference);
   follow(map, job.estimate);
   if (job.image.features == nullptr) {
     Stopwatch watch;
@@ -144,6 +152,7 @@ KeyframeReport KeyframeMapper::insert(Map& map, KeyframeJob job) {
     plane_mapper_.follow_map(map);
     append_plane_times(report.planes, report.times);
   }
+  release_images(map.keyframes.at(id));
   cull_keyframes(map, id, options_.points, report.points);
   report.times.emplace_back("Local Mapping", total.lap_ms());
   return report;

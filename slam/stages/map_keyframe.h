@@ -38,7 +38,7 @@ struct KeyframeJob {
   ImageFeatures image;    ///< with features only where the tracker used them
   PoseEstimate estimate;  ///< its landmarks are those of the tracker's map
   KeyframeId reference = kNone;
-  Pose cam_from_reference = Pose::Identity();
+  Pose cam_from_reference = Pose::Identity();  ///< as Map::relative_to_keyframe() gives it
   std::vector<LandmarkId> visible;  ///< expected in a frame since the last job, once a frame
   std::vector<LandmarkId> found;    ///< ... and found there
 };

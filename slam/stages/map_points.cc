@@ -29,52 +29,6 @@ bool scales_agree(const Keyframe& a, const Keypoint& in_a, const Keyframe& b, co
   return ratio * slack > octave_ratio && ratio < octave_ratio * slack;
 }
 
-/// Projects `candidates` into `keyframe` and joins each with what it finds there.
-void fuse_into(Map& map, const std::vector<LandmarkId>& candidates, KeyframeId id,
-               const Camera& camera, const PointMappingOptions& options, PointMappingStats& stats) {
-  std::vector<Expectation> expectations;
-  const Keyframe& keyframe = map.keyframes.at(id);
-  for (const LandmarkId candidate : candidates) {
-    const Landmark* landmark = map.landmarks.find(candidate);
-    if (landmark == nullptr) continue;
-    const bool seen = std::any_of(landmark->observations.begin(), landmark->observations.end(),
-                                  [id](const Observation& o) { return o.keyframe == id; });
-    Expectation expectation;
-    if (seen ||
-        !expect_landmark(*landmark, camera, keyframe.cam_from_world, options.levels, expectation)) {
-      continue;
-    }
-    expectation.radius_px = 3.0 * options.levels.scale(expectation.max_octave);
-    expectations.push_back(expectation);
-  }
-  ExpectationMatchOptions match;
-  match.max_distance = kStrictDistance;
-  match.ratio = 1.0;
-  const auto pairs = match_expectations(*keyframe.features, expectations, {}, match);
-  for (const auto& [keypoint_index, e] : pairs) {
-    const LandmarkId candidate = expectations[static_cast<std::size_t>(e)].landmark;
-    const Landmark* landmark = map.landmarks.find(candidate);
-    if (landmark == nullptr) continue;
-    const auto k = static_cast<std::size_t>(keypoint_index);
-    const Keypoint& keypoint = keyframe.features->keypoints[k];
-    const double sigma = options.levels.sigma_px(keypoint.octave);
-    if (squared_error_px(camera, keyframe.cam_from_world, landmark->position, keypoint) >
-        options.chi2_mono * sigma * sigma) {
-      continue;
-    }
-    const LandmarkId present = keyframe.landmarks[k];
-    if (present == candidate) continue;
-    if (present == kNone) {
-      map.add_observation(candidate, id, keypoint_index);
-    } else if (map.landmarks.at(present).observations.size() >= landmark->observations.size()) {
-      map.replace_landmark(candidate, present);
-    } else {
-      map.replace_landmark(present, candidate);
-    }
-    ++stats.fused;
-  }
-}
-
 std::vector<LandmarkId> landmarks_in(const Keyframe& keyframe) {
   std::vector<LandmarkId> ids;
   for (const LandmarkId id : keyframe.landmarks) {
@@ -198,6 +152,52 @@ void create_landmarks_from_depth(Map& map, KeyframeId id, const Camera& camera,
   }
 }
 
+void fuse_landmarks_into(Map& map, const std::vector<LandmarkId>& candidates, KeyframeId id,
+                         const Camera& camera, const PointMappingOptions& options,
+                         PointMappingStats& stats) {
+  std::vector<Expectation> expectations;
+  const Keyframe& keyframe = map.keyframes.at(id);
+  for (const LandmarkId candidate : candidates) {
+    const Landmark* landmark = map.landmarks.find(candidate);
+    if (landmark == nullptr) continue;
+    const bool seen = std::any_of(landmark->observations.begin(), landmark->observations.end(),
+                                  [id](const Observation& o) { return o.keyframe == id; });
+    Expectation expectation;
+    if (seen || !expect_landmark(*landmark, camera, keyframe.cam_from_world, options.levels,
+                                 expectation)) {
+      continue;
+    }
+    expectation.radius_px = 3.0 * options.levels.scale(expectation.max_octave);
+    expectations.push_back(expectation);
+  }
+  ExpectationMatchOptions match;
+  match.max_distance = kStrictDistance;
+  match.ratio = 1.0;
+  const auto pairs = match_expectations(*keyframe.features, expectations, {}, match);
+  for (const auto& [keypoint_index, e] : pairs) {
+    const LandmarkId candidate = expectations[static_cast<std::size_t>(e)].landmark;
+    const Landmark* landmark = map.landmarks.find(candidate);
+    if (landmark == nullptr) continue;
+    const auto k = static_cast<std::size_t>(keypoint_index);
+    const Keypoint& keypoint = keyframe.features->keypoints[k];
+    const double sigma = options.levels.sigma_px(keypoint.octave);
+    if (squared_error_px(camera, keyframe.cam_from_world, landmark->position, keypoint) >
+        options.chi2_mono * sigma * sigma) {
+      continue;
+    }
+    const LandmarkId present = keyframe.landmarks[k];
+    if (present == candidate) continue;
+    if (present == kNone) {
+      map.add_observation(candidate, id, keypoint_index);
+    } else if (map.landmarks.at(present).observations.size() >= landmark->observations.size()) {
+      map.replace_landmark(candidate, present);
+    } else {
+      map.replace_landmark(present, candidate);
+    }
+    ++stats.fused;
+  }
+}
+
 void fuse_landmarks(Map& map, KeyframeId id, const Camera& camera, bool rgbd,
                     const PointMappingOptions& options, PointMappingStats& stats) {
   const auto most =
@@ -213,7 +213,7 @@ void fuse_landmarks(Map& map, KeyframeId id, const Camera& camera, bool rgbd,
   targets.erase(std::unique(targets.begin(), targets.end()), targets.end());
 
   for (const KeyframeId target : targets) {
-    fuse_into(map, landmarks_in(map.keyframes.at(id)), target, camera, options, stats);
+    fuse_landmarks_into(map, landmarks_in(map.keyframes.at(id)), target, camera, options, stats);
   }
   std::vector<LandmarkId> around;
   for (const KeyframeId target : targets) {
@@ -222,7 +222,7 @@ void fuse_landmarks(Map& map, KeyframeId id, const Camera& camera, bool rgbd,
   }
   std::sort(around.begin(), around.end());
   around.erase(std::unique(around.begin(), around.end()), around.end());
-  fuse_into(map, around, id, camera, options, stats);
+  fuse_landmarks_into(map, around, id, camera, options, stats);
   for (const LandmarkId landmark : landmarks_in(map.keyframes.at(id))) {
     map.update_landmark_summary(landmark, options.levels);
   }

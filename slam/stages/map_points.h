@@ -70,6 +70,11 @@ void create_landmarks_from_depth(Map& map, KeyframeId keyframe, const Camera& ca
 void fuse_landmarks(Map& map, KeyframeId keyframe, const Camera& camera, bool rgbd,
                     const PointMappingOptions& options, PointMappingStats& stats);
 
+/// Projects `candidates` into `keyframe` and joins each with what it finds there.
+void fuse_landmarks_into(Map& map, const std::vector<LandmarkId>& candidates, KeyframeId keyframe,
+                         const Camera& camera, const PointMappingOptions& options,
+                         PointMappingStats& stats);
+
 /// Removes keyframes about `keyframe` most of whose landmarks others see as well. Never the first
 /// two, nor `keyframe` itself.
 void cull_keyframes(Map& map, KeyframeId keyframe, const PointMappingOptions& options,

@@ -58,7 +58,7 @@ void Tracker::follow_map(const Map& map) {
   }
   for (LandmarkId& id : last_landmarks_) id = map.resolve(id);
   std::erase(last_landmarks_, kNone);
-  last_.cam_from_world = cam_from_reference_ * map.keyframe_pose(reference_);
+  last_.cam_from_world = map.from_keyframe(cam_from_reference_, reference_);
 }
 
 PoseEstimate Tracker::match_from_last(const ImageFeatures& image, const Map& map,
@@ -266,8 +266,7 @@ void Tracker::accept(const ImageFeatures& image, const Map& map, TrackResult& re
   last_ = estimate;
   last_landmarks_ = supporting_landmarks(estimate);
   reference_ = result.reference = reference_of(map, last_landmarks_);
-  cam_from_reference_ =
-      estimate.cam_from_world * map.keyframes.at(reference_).cam_from_world.inverse();
+  cam_from_reference_ = map.relative_to_keyframe(estimate.cam_from_world, reference_);
   result.want_keyframe = image.features == nullptr ? wants_keyframe_for_patches(image, map, result)
                                                    : wants_keyframe(image, map, result);
 }
