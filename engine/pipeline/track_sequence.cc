@@ -1,6 +1,7 @@
 #include "engine/pipeline/track_sequence.h"
 
 #include <algorithm>
+#include <chrono>
 #include <fstream>
 #include <future>
 #include <memory>
@@ -64,6 +65,12 @@ slam::SystemOptions system_options(const TrackSequenceOptions& options, bool rgb
   } else if (options.plane_merge != "default") {
     throw UserError("--plane-merge " + options.plane_merge + ": expected default or paper");
   }
+  if (options.plane_fit != "graph-cut" && options.plane_fit != "plain") {
+    throw UserError("--plane-fit " + options.plane_fit + ": expected graph-cut or plain");
+  }
+  result.mapping.planes.graph_cut = options.plane_fit == "graph-cut";
+  result.mapping.map_planes = options.map_planes;
+  result.refine_jointly = options.refine_jointly;
   return result;
 }
 
@@ -77,7 +84,7 @@ class FramesAhead {
   struct Prepared {
     std::optional<slam::ImageFeatures> image;  ///< nothing: unreadable
     std::string error;
-    double milliseconds = 0.0;
+    double milliseconds = 0.0;  ///< without reading
   };
 
   void request(int index, bool initialised) {
@@ -90,7 +97,12 @@ class FramesAhead {
   Prepared prepare(int index, bool initialised) const {
     Prepared prepared;
     try {
-      prepared.image = system_.prepare(sequence_.read(index), initialised);
+      const slam::FrameInput frame = sequence_.read(index);
+      const auto start = std::chrono::steady_clock::now();
+      prepared.image = system_.prepare(frame, initialised);
+      const std::chrono::duration<double, std::milli> taken =
+          std::chrono::steady_clock::now() - start;
+      prepared.milliseconds = taken.count();
     } catch (const UserError& error) {
       prepared.error = error.what();
     }
@@ -193,6 +205,8 @@ void TwoPassTracker::first_pass() {
     record.timestamp =
         prepared.image ? prepared.image->timestamp : sequence_.timestamp(record.index);
     if (prepared.image) {
+      times_[static_cast<std::size_t>(position)].emplace_back("Feature Extraction",
+                                                              prepared.milliseconds);
       record_first(position, system_.track(*prepared.image));
     } else {
       if (!options_.skip_unreadable) throw UserError(prepared.error);
