@@ -66,11 +66,10 @@ void KeyframeMapper::segment(const ImageFeatures& image, Keyframe& keyframe, Sta
   frame.image = image.grey_or_bgr;
   frame.depth = image.depth;
   frame.labels = image.labels;
+  // The segmenter alone says what counts as a mask, not what happened to come with the frame.
   keyframe.label_image = segmenter_->segment(frame);
-  if (!keyframe.label_image.empty()) {
-    for (std::size_t k = 0; k < keyframe.labels.size(); ++k) {
-      keyframe.labels[k] = label_at(keyframe.label_image, keyframe.features->keypoints[k].raw);
-    }
+  for (std::size_t k = 0; k < keyframe.labels.size(); ++k) {
+    keyframe.labels[k] = label_at(keyframe.label_image, keyframe.features->keypoints[k].raw);
   }
   times.emplace_back("Instance Planar Segmentation", watch.lap_ms());
 }
