@@ -66,6 +66,8 @@ void add_tracking_options(CLI::App& command, TrackingOptions& options) {
       ->capture_default_str();
   command.add_flag("--causal", options.causal,
                    "Each frame as it was known at its time (default: two passes)");
+  command.add_flag("--no-loop-closing", options.no_loop_closing,
+                   "Do not correct the drift where the camera comes back to a known place");
   command.add_option("--up", options.up,
                      "World's up direction x,y,z (first camera: x right, y down)");
   command.add_option("--plane-merge", options.plane_merge, "default or paper")
@@ -87,6 +89,7 @@ engine::TrackSequenceOptions TrackingOptions::resolve(const CommonOptions& commo
   result.mode = mode;
   result.segmentation = segmentation;
   result.causal = causal;
+  result.close_loops = !no_loop_closing;
   result.threads = common.threads;
   result.seed = common.seed;
   result.skip_unreadable = input.skip_unreadable;

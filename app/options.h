@@ -44,6 +44,7 @@ struct TrackingOptions {
   std::string plane_merge = "default";
   std::string plane_fit = "graph-cut";
   bool causal = false;
+  bool no_loop_closing = false;
   bool no_planes = false;
   bool no_joint_refinement = false;
 

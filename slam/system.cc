@@ -10,10 +10,27 @@
 namespace planecast::slam {
 namespace {
 
+PrepareOptions prepare_options(const SystemOptions& options) {
+  PrepareOptions prepare;
+  prepare.orb = options.orb;
+  prepare.rgbd = options.rgbd;
+  prepare.max_keypoint_depth_m = options.max_keypoint_depth_m;
+  return prepare;
+}
+
 /// One set of pyramid levels and one seed for every stage.
 SystemOptions with_common_values(SystemOptions options) {
   const ScaleLevels levels = options.orb.levels;
   options.initialise.levels = levels;
+  options.initialise.tracks.scale_levels = levels;
+  options.initialise.features = options.initial_features;
+  options.initialise.by_patches = options.track.front_end == FrontEnd::kPatches;
+  if (options.initialise.by_patches) {
+    // Followed corners are good to a fifth of a pixel, so that half the parallax tells depth as well
+    // as twice as much does with whole-pixel features.
+    options.initialise.two_view.sigma_px = 0.5;
+    options.initialise.two_view.min_parallax_deg = 0.5;
+  }
   options.initialise.seed = options.seed;
   options.track.localise.levels = levels;
   options.track.relocalise.localise.levels = levels;
@@ -22,33 +39,29 @@ SystemOptions with_common_values(SystemOptions options) {
   options.mapping.points.levels = levels;
   options.mapping.bundle.levels = levels;
   options.mapping.planes.seed = options.seed;
+  options.track.relocalise.vocabulary = options.vocabulary;
+  options.loops.rgbd = options.rgbd;
+  options.loops.verify.with_scale = !options.rgbd;
+  options.loops.verify.seed = options.seed;
+  options.loops.verify.levels = levels;
+  options.loops.points = options.mapping.points;
+  options.loops.bundle = options.mapping.bundle;
+  options.mapping.prepare = prepare_options(options);
+  options.track.max_keypoint_depth_m = options.max_keypoint_depth_m;
+  options.track.patches.levels = levels;
+  options.mapping.describe.patches.levels = levels;
+  options.mapping.describe.localise = options.track.localise;
+  options.mapping.search.points = options.mapping.points;
+  options.mapping.search_by_patches = options.track.front_end == FrontEnd::kPatches;
   return options;
-}
-
-/// Depth at a raw pixel; 0 where the 3x3 window disagrees, as at the edge of an object.
-float depth_at(const cv::Mat& depth, const Eigen::Vector2f& raw, double max_depth_m) {
-  const int x = static_cast<int>(std::lround(raw.x()));
-  const int y = static_cast<int>(std::lround(raw.y()));
-  if (x < 1 || y < 1 || x >= depth.cols - 1 || y >= depth.rows - 1) return 0.0F;
-  const float centre = depth.at<float>(y, x);
-  if (!(centre > 0.0F) || centre > static_cast<float>(max_depth_m)) return 0.0F;
-  const float slack = 0.03F * centre;
-  for (int dy = -1; dy <= 1; ++dy) {
-    for (int dx = -1; dx <= 1; ++dx) {
-      const float other = depth.at<float>(y + dy, x + dx);
-      if (other > 0.0F && std::abs(other - centre) > slack) return 0.0F;
-    }
-  }
-  return centre;
 }
 
 PoseEstimate estimate_of_keyframe(const Keyframe& keyframe) {
   PoseEstimate estimate;
   estimate.cam_from_world = keyframe.cam_from_world;
   estimate.matches = keyframe.landmarks;
-  estimate.inliers = static_cast<int>(
-      std::count_if(estimate.matches.begin(), estimate.matches.end(),
-                    [](LandmarkId id) { return id != kNone; }));
+  estimate.inliers = static_cast<int>(std::count_if(
+      estimate.matches.begin(), estimate.matches.end(), [](LandmarkId id) { return id != kNone; }));
   return estimate;
 }
 
@@ -58,48 +71,44 @@ System::System(const SystemOptions& options, const Camera& camera,
                std::unique_ptr<PlaneSegmenter> segmenter)
     : options_(with_common_values(options)),
       camera_(camera),
-      extractor_(std::make_unique<OrbExtractor>(options_.orb)),
-      initialiser_(options_.initialise, camera),
+      preparer_(std::make_unique<ImagePreparer>(options_.mapping.prepare, camera)),
+      tracker_preparer_(std::make_unique<ImagePreparer>(options_.mapping.prepare, camera)),
+      initialiser_(options_.initialise, options_.mapping.prepare, camera),
       tracker_(options_.track, camera, options_.rgbd),
-      mapper_(options_.mapping, camera, std::move(segmenter)) {}
+      mapper_(options_.mapping, camera, std::move(segmenter)) {
+  if (options_.close_loops && options_.vocabulary != nullptr) {
+    loop_finder_.emplace(options_.loops, camera_, options_.vocabulary);
+  }
+}
 
 System::~System() {
+  if (open_loop_) open_loop_->correction.wait();
   for (const InFlight& flight : in_flight_) flight.result.wait();
 }
 
 ImageFeatures System::prepare(const FrameInput& frame, bool initialised) const {
-  ImageFeatures image;
-  image.frame_index = frame.index;
-  image.timestamp = frame.timestamp;
-  image.grey_or_bgr = frame.image;
-  image.labels = frame.labels;
-  if (options_.rgbd) image.depth = frame.depth;
-  cv::Mat grey = frame.image;
-  if (frame.image.channels() == 3) cv::cvtColor(frame.image, grey, cv::COLOR_BGR2GRAY);
-  const int limit = initialised || options_.rgbd ? options_.orb.features : options_.initial_features;
-  auto features = std::make_shared<Features>(extractor_->extract(grey, camera_, limit));
-  if (!image.depth.empty()) {
-    for (Keypoint& keypoint : features->keypoints) {
-      keypoint.depth = depth_at(image.depth, keypoint.raw, options_.max_keypoint_depth_m);
-    }
+  ImageFeatures image = preparer_->read(frame);
+  if (!initialised || options_.track.front_end == FrontEnd::kOrb) {
+    preparer_->extract(
+        image, initialised || options_.rgbd ? options_.orb.features : options_.initial_features);
   }
-  image.features = std::move(features);
   return image;
 }
 
 void System::restart() {
-  StageTimes ignored;
-  while (!in_flight_.empty()) take_over_due(in_flight_.back().visible_at, ignored);
+  FrameTrack ignored;
+  take_over_all(ignored);
   working_map_ = Map();
   visible_map_ = std::make_shared<const Map>();
   initialiser_.reset();
   tracker_ = Tracker(options_.track, camera_, options_.rgbd);
   mapper_.reset();
+  if (loop_finder_) loop_finder_->reset();
   next_job_ = {};
   lost_frames_ = 0;
 }
 
-void System::start(const ImageFeatures& image, FrameTrack& result) {
+void System::start(ImageFeatures& image, FrameTrack& result) {
   Stopwatch watch;
   const std::optional<ImageFeatures> reference = initialiser_.reference();
   const InitialiseResult started =
@@ -116,6 +125,7 @@ void System::start(const ImageFeatures& image, FrameTrack& result) {
   images.push_back(image);
   const KeyframeReport report = mapper_.start(working_map_, images);
   result.mapping_times = report.times;
+  if (options_.vocabulary != nullptr) describe_keyframes(working_map_, *options_.vocabulary);
   visible_map_ = std::make_shared<const Map>(working_map_);
   const KeyframeId newest = map().keyframes.next_id() - 1;
   tracker_.start(image, estimate_of_keyframe(map().keyframes.at(newest)), newest);
@@ -126,65 +136,139 @@ void System::start(const ImageFeatures& image, FrameTrack& result) {
   result.inliers = static_cast<int>(map().landmarks.size());
 }
 
-void System::hand_over(const ImageFeatures& image, const TrackResult& tracked,
-                       FrameTrack& result) {
+void System::hand_over(const ImageFeatures& image, const TrackResult& tracked, FrameTrack& result) {
   KeyframeJob job = std::exchange(next_job_, {});
   job.image = image;
-  job.matches = tracked.estimate.matches;
+  job.estimate = tracked.estimate;
   job.reference = tracked.reference;
   job.cam_from_reference = result.cam_from_reference;
-  const std::shared_future<Mapped> earlier =
+  enqueue(image.frame_index, image.frame_index + options_.mapping_delay,
+          [this, job = std::move(job)] {
+            Mapped mapped;
+            mapped.report = mapper_.insert(working_map_, job);
+            if (loop_finder_) {
+              mapped.loop = loop_finder_->look(working_map_, mapped.report.keyframe);
+            } else if (options_.vocabulary != nullptr) {
+              describe_keyframes(working_map_, *options_.vocabulary);
+            }
+            return mapped;
+          });
+  tracker_.keyframe_requested(image.frame_index);
+  result.keyframe = true;
+}
+
+void System::enqueue(int frame_index, int visible_at, MapJob job) {
+  std::shared_future<Mapped> earlier =
       in_flight_.empty() ? std::shared_future<Mapped>() : in_flight_.back().result;
   InFlight flight;
-  flight.visible_at = image.frame_index + options_.mapping_delay;
+  flight.inserted_at = frame_index;
+  flight.visible_at = visible_at;
   if (!in_flight_.empty()) {
     flight.visible_at = std::max(flight.visible_at, in_flight_.back().visible_at + 1);
   }
   flight.result =
       std::async(options_.threads > 1 ? std::launch::async : std::launch::deferred,
-                 [this, earlier, job = std::move(job)] {
-                   if (earlier.valid()) earlier.wait();
-                   Mapped mapped;
-                   mapped.report = mapper_.insert(working_map_, job);
+                 [this, earlier, job = std::move(job)]() mutable {
+                   // Let go of it, or each result would hold all before it, with their maps.
+                   if (earlier.valid()) std::exchange(earlier, {}).wait();
+                   Mapped mapped = job();
                    mapped.map = std::make_shared<const Map>(working_map_);
                    return mapped;
                  })
           .share();
   in_flight_.push_back(std::move(flight));
-  tracker_.keyframe_requested(image.frame_index);
-  result.keyframe = true;
 }
 
-void System::take_over(InFlight flight, StageTimes& times) {
+void System::begin_loop(const Mapped& mapped, int inserted_at) {
+  open_loop_.emplace();
+  open_loop_->visible_at = inserted_at + options_.loop_delay;
+  open_loop_->correction =
+      std::async(options_.threads > 1 ? std::launch::async : std::launch::deferred,
+                 [this, map = mapped.map, match = *mapped.loop] {
+                   return correct_loop(*map, camera_, match, options_.loops);
+                 })
+          .share();
+}
+
+/// Queues the carrying over of the loop among the keyframes so that it is due when it should be.
+void System::enqueue_open_loop(int frame_index) {
+  if (!open_loop_ || frame_index + options_.mapping_delay < open_loop_->visible_at) return;
+  const OpenLoop loop = *std::exchange(open_loop_, std::nullopt);
+  enqueue(frame_index, loop.visible_at, [this, correction = loop.correction] {
+    Mapped mapped;
+    Stopwatch watch;
+    if (correction.get()) {
+      carry_over(*correction.get(), camera_, options_.loops, working_map_);
+      mapper_.follow_map(working_map_);
+      mapped.loop_closed = true;
+    }
+    loop_finder_->closed(working_map_);
+    mapped.report.times.emplace_back("Loop Closing", watch.lap_ms());
+    return mapped;
+  });
+}
+
+void System::take_over(InFlight flight, FrameTrack& result) {
   const Mapped& mapped = flight.result.get();
-  times.insert(times.end(), mapped.report.times.begin(), mapped.report.times.end());
+  result.mapping_times.insert(result.mapping_times.end(), mapped.report.times.begin(),
+                              mapped.report.times.end());
   visible_map_ = mapped.map;
   tracker_.follow_map(map());
+  result.loop_closed = result.loop_closed || mapped.loop_closed;
+  if (mapped.loop) begin_loop(mapped, flight.inserted_at);
 }
 
-void System::take_over_due(int frame_index, StageTimes& times) {
+void System::take_over_due(int frame_index, FrameTrack& result) {
   while (!in_flight_.empty() && in_flight_.front().visible_at <= frame_index) {
     InFlight flight = std::move(in_flight_.front());
     in_flight_.pop_front();
-    take_over(std::move(flight), times);
+    take_over(std::move(flight), result);
   }
 }
 
-FrameTrack System::track(const ImageFeatures& image) {
+void System::take_over_all(FrameTrack& result) {
+  while (!in_flight_.empty() || open_loop_) {
+    if (in_flight_.empty()) enqueue_open_loop(open_loop_->visible_at);
+    take_over_due(in_flight_.back().visible_at, result);
+  }
+}
+
+/// Images that were prepared before the map was there have features; patches are tried first all
+/// the same.
+TrackResult System::track_in_map(ImageFeatures& image) {
+  if (options_.track.front_end == FrontEnd::kPatches) {
+    ImageFeatures bare = image;
+    bare.features = nullptr;
+    TrackResult tracked = tracker_.track(bare, map());
+    if (!tracked.needs_features) {
+      image = std::move(bare);
+      return tracked;
+    }
+    if (image.features == nullptr) tracker_preparer_->extract(image);
+  }
+  return tracker_.track(image, map());
+}
+
+FrameTrack System::track(ImageFeatures image) {
   FrameTrack result;
-  take_over_due(image.frame_index, result.mapping_times);
+  take_over_due(image.frame_index, result);
+  enqueue_open_loop(image.frame_index);
+  take_over_due(image.frame_index, result);
   if (lost_frames_ >= options_.restart_after_lost &&
       static_cast<int>(map().keyframes.size()) < options_.restart_keyframes) {
     restart();
     result.restarted = true;
   }
   if (!initialised()) {
+    // After a restart the images on the way have none yet.
+    if (options_.rgbd && image.features == nullptr) tracker_preparer_->extract(image);
     start(image, result);
     return result;
   }
+  const double prepare_ms = image.prepare_ms;
   Stopwatch watch;
-  const TrackResult tracked = tracker_.track(image, map());
-  result.times.emplace_back("Tracking", watch.lap_ms());
+  const TrackResult tracked = track_in_map(image);
+  result.times.emplace_back("Tracking", prepare_ms + watch.lap_ms());
   if (!tracked.tracked) {
     ++lost_frames_;
     result.state = TrackState::kLost;
@@ -195,24 +279,24 @@ FrameTrack System::track(const ImageFeatures& image) {
   const PoseEstimate& estimate = tracked.estimate;
   next_job_.visible.insert(next_job_.visible.end(), estimate.visible.begin(),
                            estimate.visible.end());
-  for (const LandmarkId id : estimate.matches) {
-    if (id != kNone) next_job_.found.push_back(id);
-  }
+  const std::vector<LandmarkId> found = supporting_landmarks(estimate);
+  next_job_.found.insert(next_job_.found.end(), found.begin(), found.end());
   result.state = TrackState::kTracked;
   result.inliers = estimate.inliers;
   result.cam_from_world = estimate.cam_from_world;
   result.reference = tracked.reference;
   result.cam_from_reference =
-      estimate.cam_from_world * map().keyframe_pose(tracked.reference).inverse();
+      map().relative_to_keyframe(estimate.cam_from_world, tracked.reference);
   if (tracked.want_keyframe) hand_over(image, tracked, result);
   return result;
 }
 
 FinishResult System::finish() {
   FinishResult result;
-  while (!in_flight_.empty()) {
-    take_over_due(in_flight_.back().visible_at, result.mapping_times);
-  }
+  FrameTrack last;
+  take_over_all(last);
+  result.mapping_times = std::move(last.mapping_times);
+  result.loop_closed = last.loop_closed;
   if (working_map_.keyframes.size() < 2) return result;
   BundleOptions bundle = options_.mapping.bundle;
   bundle.iterations = 20;
@@ -234,10 +318,34 @@ FinishResult System::finish() {
   return result;
 }
 
+std::optional<PoseEstimate> System::localise_by_patches(const ImageFeatures& image,
+                                                        const Pose& prior_cam_from_world) const {
+  const TrackOptions& options = options_.track;
+  std::vector<LandmarkId> everywhere;
+  for (const Landmark& landmark : map().landmarks) everywhere.push_back(landmark.id);
+  PatchMatchOptions patches = options.patches;
+  patches.max_matches = options_.localise_matches;
+  const PatchMatches found =
+      match_patches(map(), camera_, *image.pyramid, prior_cam_from_world, everywhere, patches);
+  PoseEstimate estimate =
+      optimise_patches(map(), camera_, image.depth, options_.max_keypoint_depth_m,
+                       prior_cam_from_world, found.matches);
+  if (estimate.inliers < options.min_inliers ||
+      estimate.inliers < options.min_patch_share * static_cast<double>(found.tried.size())) {
+    return std::nullopt;
+  }
+  return estimate;
+}
+
 std::optional<PoseEstimate> System::localise(
-    const ImageFeatures& image, const std::optional<Pose>& prior_cam_from_world) const {
+    ImageFeatures image, const std::optional<Pose>& prior_cam_from_world) const {
   if (!initialised()) return std::nullopt;
   const LocaliseOptions& options = options_.track.localise;
+  if (prior_cam_from_world && options_.track.front_end == FrontEnd::kPatches) {
+    std::optional<PoseEstimate> estimate = localise_by_patches(image, *prior_cam_from_world);
+    if (estimate) return estimate;
+  }
+  if (image.features == nullptr) tracker_preparer_->extract(image);
   if (prior_cam_from_world) {
     PoseEstimate prior;
     prior.cam_from_world = *prior_cam_from_world;
@@ -247,7 +355,8 @@ std::optional<PoseEstimate> System::localise(
     PoseEstimate estimate =
         search_local_map(map(), camera_, *image.features, prior, everywhere, 2.0, options);
     if (estimate.inliers >= options_.track.min_inliers) {
-      estimate = search_local_map(map(), camera_, *image.features, estimate, everywhere, 1.0, options);
+      estimate =
+          search_local_map(map(), camera_, *image.features, estimate, everywhere, 1.0, options);
       if (estimate.inliers >= options_.track.min_inliers) return estimate;
     }
   }

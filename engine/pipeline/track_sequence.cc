@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <fstream>
 #include <future>
 #include <memory>
 #include <utility>
 
+#include "engine/assets.h"
 #include "engine/pipeline/map_to_records.h"
 #include "engine/scene/plane_classes.h"
 #include "engine/user_error.h"
@@ -42,12 +44,22 @@ std::unique_ptr<slam::PlaneSegmenter> choose_segmenter(const Sequence& sequence,
   throw UserError("--segmentation " + kind + ": expected auto, masks, depth or none");
 }
 
+std::shared_ptr<const slam::Vocabulary> load_vocabulary() {
+  const std::filesystem::path path = asset("vocabulary/orb.bin");
+  std::ifstream in(path, std::ios::binary);
+  std::optional<slam::Vocabulary> vocabulary = slam::Vocabulary::read(in);
+  if (!vocabulary) throw UserError(path.string() + ": is broken or no vocabulary");
+  return std::make_shared<const slam::Vocabulary>(*std::move(vocabulary));
+}
+
 slam::SystemOptions system_options(const TrackSequenceOptions& options, bool rgbd) {
   slam::SystemOptions result;
   result.rgbd = rgbd;
   result.seed = options.seed;
   result.orb.features = options.features;
   result.threads = options.threads;
+  result.close_loops = options.close_loops;
+  result.vocabulary = load_vocabulary();
   if (options.plane_merge == "paper") {
     result.mapping.planes.merge = slam::PlaneMerge::kPaper;
   } else if (options.plane_merge != "default") {
@@ -211,7 +223,7 @@ void TwoPassTracker::take_over_references() {
     const auto p = static_cast<std::size_t>(position);
     if (tracked_[p].reference == slam::kNone) continue;
     const slam::Pose cam_from_world =
-        tracked_[p].cam_from_reference * system_.map().keyframe_pose(tracked_[p].reference);
+        system_.map().from_keyframe(tracked_[p].cam_from_reference, tracked_[p].reference);
     frames_[p].world_from_cam = cam_from_world.inverse();
   }
 }

@@ -23,6 +23,7 @@ struct TrackSequenceOptions {
   bool map_planes = true;
   bool refine_jointly = true;  ///< final refinement of points, poses and planes together
   int features = 1000;
+  bool close_loops = true;
 };
 
 /// Called with (done, total) after each frame of either pass.

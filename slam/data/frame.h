@@ -60,7 +60,12 @@ struct Features {
   std::vector<int> cell_items_;
 };
 
-/// Levels of the image pyramid: level l is scaled down by factor^l.
+/// A grey image (8-bit) and its halves, finest first.
+struct ImagePyramid {
+  std::vector<cv::Mat> levels;
+};
+
+/// Levels of the features' pyramid: level l is scaled down by factor^l.
 struct ScaleLevels {
   int levels = 8;
   double factor = 1.2;

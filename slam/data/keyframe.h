@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "slam/data/bag_of_words.h"
 #include "slam/data/frame.h"
 #include "slam/data/types.h"
 
@@ -14,11 +15,16 @@ struct Keyframe {
   double timestamp = 0.0;
   Pose cam_from_world = Pose::Identity();
   std::shared_ptr<const Features> features;  ///< shared between snapshots, never changed
+  std::shared_ptr<const ImagePyramid> pyramid;  ///< raw pixels; shared; may be null
   std::vector<LandmarkId> landmarks;         ///< per keypoint; kNone where there is none
   std::vector<int> labels;                   ///< per keypoint: plane instance mask label, 0 = none
-  cv::Mat depth;          ///< CV_32F metres, raw pixels, may be empty; shared, never written
-  cv::Mat label_image;    ///< CV_16U plane instances, raw pixels, may be empty; shared
+  cv::Mat depth;        ///< CV_32F metres, raw pixels; only while the keyframe is being mapped
+  cv::Mat label_image;  ///< CV_16U plane instances, raw pixels; only while it is being mapped
   KeyframeId parent = kNone;                 ///< spanning tree
+  /// What one unit of length measured from this keyframe at its insertion is worth in the map now: a
+  /// closed loop gives each part of a monocular map its own new scale.
+  double unit = 1.0;
+  std::shared_ptr<const BagOfWords> words;   ///< for place recognition; shared, never changed
 
   Eigen::Vector3d centre_world() const { return cam_from_world.inverse().translation(); }
 };

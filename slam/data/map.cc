@@ -51,31 +51,63 @@ void Map::erase_keyframe(KeyframeId keyframe) {
   if (found == nullptr) return;
   const KeyframeId parent = found->parent;
   const std::vector<LandmarkId> seen = found->landmarks;
-  erased_keyframes_.push_back(
-      {keyframe, parent, found->cam_from_world * keyframe_pose(parent).inverse()});
+  const ErasedKeyframe erased = {keyframe, parent,
+                                 relative_to_keyframe(found->cam_from_world, parent),
+                                 found->unit / keyframe_unit(parent)};
+  erased_keyframes_.insert(
+      std::lower_bound(erased_keyframes_.begin(), erased_keyframes_.end(), keyframe,
+                       [](const ErasedKeyframe& e, KeyframeId id) { return e.id < id; }),
+      erased);
   for (const LandmarkId landmark : seen) {
     if (landmark != kNone) remove_observation(landmark, keyframe);
   }
   for (Keyframe& other : keyframes) {
     if (other.parent == keyframe) other.parent = parent;
   }
+  for (auto& [a, b] : loop_edges) {
+    if (a == keyframe) a = parent;
+    if (b == keyframe) b = parent;
+  }
+  std::erase_if(loop_edges, [](const auto& e) { return e.first == kNone || e.first == e.second; });
   keyframes.erase(keyframe);
+}
+
+const Map::ErasedKeyframe* Map::find_erased(KeyframeId keyframe) const {
+  const auto place =
+      std::lower_bound(erased_keyframes_.begin(), erased_keyframes_.end(), keyframe,
+                       [](const ErasedKeyframe& e, KeyframeId id) { return e.id < id; });
+  return place != erased_keyframes_.end() && place->id == keyframe ? &*place : nullptr;
 }
 
 Pose Map::keyframe_pose(KeyframeId keyframe) const {
   if (const Keyframe* alive = keyframes.find(keyframe)) return alive->cam_from_world;
-  for (const ErasedKeyframe& erased : erased_keyframes_) {
-    if (erased.id == keyframe) return erased.cam_from_parent * keyframe_pose(erased.parent);
-  }
-  return Pose::Identity();
+  const ErasedKeyframe* erased = find_erased(keyframe);
+  return erased == nullptr ? Pose::Identity()
+                           : from_keyframe(erased->cam_from_parent, erased->parent);
+}
+
+double Map::keyframe_unit(KeyframeId keyframe) const {
+  if (const Keyframe* alive = keyframes.find(keyframe)) return alive->unit;
+  const ErasedKeyframe* erased = find_erased(keyframe);
+  return erased == nullptr ? 1.0 : erased->unit_per_parent * keyframe_unit(erased->parent);
+}
+
+Pose Map::relative_to_keyframe(const Pose& cam_from_world, KeyframeId keyframe) const {
+  Pose relative = cam_from_world * keyframe_pose(keyframe).inverse();
+  relative.translation() /= keyframe_unit(keyframe);
+  return relative;
+}
+
+Pose Map::from_keyframe(const Pose& cam_from_keyframe, KeyframeId keyframe) const {
+  Pose scaled = cam_from_keyframe;
+  scaled.translation() *= keyframe_unit(keyframe);
+  return scaled * keyframe_pose(keyframe);
 }
 
 KeyframeId Map::living_ancestor(KeyframeId keyframe) const {
   if (keyframe == kNone || keyframes.contains(keyframe)) return keyframe;
-  for (const ErasedKeyframe& erased : erased_keyframes_) {
-    if (erased.id == keyframe) return living_ancestor(erased.parent);
-  }
-  return kNone;
+  const ErasedKeyframe* erased = find_erased(keyframe);
+  return erased == nullptr ? kNone : living_ancestor(erased->parent);
 }
 
 void Map::replace_landmark(LandmarkId from, LandmarkId to) {
@@ -190,6 +222,7 @@ void Map::transform(double scale, const Pose& new_from_old) {
     keyframe.cam_from_world.linear() =
         (keyframe.cam_from_world.linear() * new_from_old.linear().transpose()).eval();
     keyframe.cam_from_world.translation() = -(keyframe.cam_from_world.linear() * centre);
+    keyframe.unit *= scale;
   }
   for (Landmark& landmark : landmarks) {
     landmark.position = moved(landmark.position);
@@ -197,7 +230,6 @@ void Map::transform(double scale, const Pose& new_from_old) {
     landmark.min_distance *= scale;
     landmark.max_distance *= scale;
   }
-  for (ErasedKeyframe& erased : erased_keyframes_) erased.cam_from_parent.translation() *= scale;
   for (Plane& plane : planes) {
     plane.normal = new_from_old.linear() * plane.normal;
     plane.x_axis = new_from_old.linear() * plane.x_axis;

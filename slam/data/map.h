@@ -19,6 +19,8 @@ class Map {
   SlotStore<Keyframe> keyframes;
   SlotStore<Landmark> landmarks;
   SlotStore<Plane> planes;
+  /// Pairs of keyframes that a closed loop has tied together: edges of the essential graph. Both alive.
+  std::vector<std::pair<KeyframeId, KeyframeId>> loop_edges;
 
   void add_observation(LandmarkId landmark, KeyframeId keyframe, int keypoint);
   /// Removes it; a landmark left with fewer than `min_observations` is erased too.
@@ -37,6 +39,12 @@ class Map {
   Pose keyframe_pose(KeyframeId keyframe) const;
   /// The keyframe itself, or the nearest ancestor that was not erased.
   KeyframeId living_ancestor(KeyframeId keyframe) const;
+  /// Keyframe::unit, of an erased keyframe by way of its ancestors.
+  double keyframe_unit(KeyframeId keyframe) const;
+  /// A camera relative to a keyframe, in that keyframe's own units, and back: what is kept relative
+  /// stays right when a closed loop moves and scales the keyframe.
+  Pose relative_to_keyframe(const Pose& cam_from_world, KeyframeId keyframe) const;
+  Pose from_keyframe(const Pose& cam_from_keyframe, KeyframeId keyframe) const;
 
   /// Keyframes that share at least `min_shared` landmarks with `keyframe`, most first, ties by id.
   std::vector<std::pair<KeyframeId, int>> covisible(KeyframeId keyframe, int min_shared = 15) const;
@@ -50,13 +58,17 @@ class Map {
   void transform(double scale, const Pose& new_from_old);
 
  private:
+  friend class MapArchive;
   struct ErasedKeyframe {
     KeyframeId id;
     KeyframeId parent;
-    Pose cam_from_parent;
+    Pose cam_from_parent;     ///< in the parent's units
+    double unit_per_parent;   ///< its unit over the parent's
   };
+  const ErasedKeyframe* find_erased(KeyframeId keyframe) const;
+
   std::vector<std::pair<LandmarkId, LandmarkId>> replaced_;  ///< ascending by first
-  std::vector<ErasedKeyframe> erased_keyframes_;
+  std::vector<ErasedKeyframe> erased_keyframes_;             ///< ascending by id
 };
 
 }  // namespace planecast::slam

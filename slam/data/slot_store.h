@@ -14,6 +14,11 @@ class SlotStore {
  public:
   int next_id() const { return static_cast<int>(slots_.size()); }
 
+  /// Makes the ids below `next_id` given out, erased where nothing is stored.
+  void reserve_ids(int next_id) {
+    if (next_id > this->next_id()) slots_.resize(static_cast<std::size_t>(next_id));
+  }
+
   /// Stores `value` under `value.id`, which must be next_id() or an erased or unused id below it.
   T& put(T value) {
     const std::size_t index = static_cast<std::size_t>(value.id);

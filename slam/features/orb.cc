@@ -81,6 +81,8 @@ struct OrbExtractor::Impl {
   void build_pyramid(const cv::Mat& grey);
   std::vector<cv::KeyPoint> detect(int level, int limit, int threshold) const;
   std::vector<cv::KeyPoint> detect_all(int limit, int threshold) const;
+  /// May reorder the corners.
+  void describe(std::vector<cv::KeyPoint>& corners, std::vector<Descriptor>& descriptors) const;
 };
 
 void OrbExtractor::Impl::build_pyramid(const cv::Mat& grey) {
@@ -117,7 +119,8 @@ std::vector<cv::KeyPoint> OrbExtractor::Impl::detect(int level, int limit, int t
 }
 
 std::vector<cv::KeyPoint> OrbExtractor::Impl::detect_all(int limit, int threshold) const {
-  // Each level gets a share in proportion to its scale, as the area per corner then stays alike [K].
+  // Each level gets a share in proportion to its scale, as the area per corner then stays alike
+  // [K].
   const double ratio = 1.0 / options.levels.factor;
   const auto levels = static_cast<int>(pyramid.size());
   double share = limit * (1.0 - ratio) / (1.0 - std::pow(ratio, levels));
@@ -128,6 +131,17 @@ std::vector<cv::KeyPoint> OrbExtractor::Impl::detect_all(int limit, int threshol
     all.insert(all.end(), corners.begin(), corners.end());
   }
   return all;
+}
+
+void OrbExtractor::Impl::describe(std::vector<cv::KeyPoint>& corners,
+                                  std::vector<Descriptor>& descriptors) const {
+  if (corners.empty()) return;
+  cv::Mat rows;
+  descriptor->compute(pyramid.front(), corners, rows);
+  descriptors.resize(corners.size());
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    std::memcpy(descriptors[i].data(), rows.ptr<uchar>(static_cast<int>(i)), sizeof(Descriptor));
+  }
 }
 
 OrbExtractor::OrbExtractor(const OrbOptions& options) : impl_(std::make_unique<Impl>()) {
@@ -147,25 +161,55 @@ Features OrbExtractor::extract(const cv::Mat& grey, const Camera& camera, int li
   if (static_cast<double>(corners.size()) < options.low_contrast_share * limit) {
     corners = impl_->detect_all(limit, options.fast_threshold_lowest);
   }
-  cv::Mat descriptors;
-  if (!corners.empty()) impl_->descriptor->compute(grey, corners, descriptors);
-
   Features features;
+  impl_->describe(corners, features.descriptors);
   features.keypoints.reserve(corners.size());
-  features.descriptors.resize(corners.size());
-  for (std::size_t i = 0; i < corners.size(); ++i) {
+  for (const cv::KeyPoint& corner : corners) {
     Keypoint keypoint;
-    keypoint.raw = {corners[i].pt.x, corners[i].pt.y};
+    keypoint.raw = {corner.pt.x, corner.pt.y};
     keypoint.pixel = camera.undistort(keypoint.raw.cast<double>()).cast<float>();
-    keypoint.angle_deg = corners[i].angle;
-    keypoint.response = corners[i].response;
-    keypoint.octave = corners[i].octave;
+    keypoint.angle_deg = corner.angle;
+    keypoint.response = corner.response;
+    keypoint.octave = corner.octave;
     features.keypoints.push_back(keypoint);
-    std::memcpy(features.descriptors[i].data(), descriptors.ptr<uchar>(static_cast<int>(i)),
-                sizeof(Descriptor));
   }
   features.build_grid(camera.width, camera.height);
   return features;
+}
+
+void OrbExtractor::set_image(const cv::Mat& grey) { impl_->build_pyramid(grey); }
+
+std::vector<int> OrbExtractor::append(const std::vector<Keypoint>& points, Features& features) {
+  const ScaleLevels& levels = impl_->options.levels;
+  std::vector<cv::KeyPoint> corners;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto level = static_cast<std::size_t>(points[i].octave);
+    if (level >= impl_->pyramid.size()) continue;
+    const cv::Mat& image = impl_->pyramid[level];
+    const auto scale = static_cast<float>(levels.scale(points[i].octave));
+    cv::KeyPoint corner(points[i].raw.x() / scale, points[i].raw.y() / scale, 31.0F * scale);
+    if (corner.pt.x < kBorder || corner.pt.y < kBorder ||
+        corner.pt.x > static_cast<float>(image.cols - 1 - kBorder) ||
+        corner.pt.y > static_cast<float>(image.rows - 1 - kBorder)) {
+      continue;
+    }
+    corner.angle = orientation_deg(image, corner.pt, impl_->half_width);
+    corner.pt *= scale;
+    corner.octave = points[i].octave;
+    corner.class_id = static_cast<int>(i);
+    corners.push_back(corner);
+  }
+  std::vector<Descriptor> descriptors;
+  impl_->describe(corners, descriptors);
+  std::vector<int> indices(points.size(), -1);
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    const auto i = static_cast<std::size_t>(corners[c].class_id);
+    indices[i] = features.size();
+    features.keypoints.push_back(points[i]);
+    features.keypoints.back().angle_deg = corners[c].angle;
+    features.descriptors.push_back(descriptors[c]);
+  }
+  return indices;
 }
 
 }  // namespace planecast::slam

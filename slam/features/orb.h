@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <opencv2/core.hpp>
+#include <vector>
 
 #include "slam/data/camera.h"
 #include "slam/data/frame.h"
@@ -13,9 +14,9 @@ struct OrbOptions {
   int features = 1000;
   ScaleLevels levels;
   int fast_threshold = 20;
-  int fast_threshold_low = 7;      ///< in cells where the first finds nothing
-  int fast_threshold_lowest = 2;   ///< for a whole image of low contrast (paper, ICL-NUIM)
-  double low_contrast_share = 0.3; ///< ... when fewer than this share of the features was found
+  int fast_threshold_low = 7;       ///< in cells where the first finds nothing
+  int fast_threshold_lowest = 2;    ///< for a whole image of low contrast (paper, ICL-NUIM)
+  double low_contrast_share = 0.3;  ///< ... when fewer than this share of the features was found
   int cell_px = 32;
 };
 
@@ -29,6 +30,13 @@ class OrbExtractor {
   /// `grey`: 8-bit single channel, raw pixels. `limit`: how many features, 0 = options.features.
   /// The result has raw and undistorted pixels, no depth, no labels; its grid is built.
   Features extract(const cv::Mat& grey, const Camera& camera, int limit = 0);
+
+  /// Makes `grey` the image that append() describes points in, as extract() does.
+  void set_image(const cv::Mat& grey);
+  /// Describes points found otherwise (raw pixel, undistorted pixel and octave are given) in the
+  /// image that was set last, and appends them to its `features`. Returns the index of each, or -1
+  /// for one too near to the border. The grid has to be built again.
+  std::vector<int> append(const std::vector<Keypoint>& points, Features& features);
 
  private:
   struct Impl;

@@ -41,10 +41,58 @@ PoseEstimate optimise_matches(const Map& map, const Camera& camera, const Featur
   return estimate;
 }
 
-std::vector<KeyframeId> local_keyframes(const Map& map, const std::vector<LandmarkId>& matches,
+std::vector<LandmarkId> supporting_landmarks(const PoseEstimate& estimate) {
+  std::vector<LandmarkId> landmarks;
+  for (const LandmarkId id : estimate.matches) {
+    if (id != kNone) landmarks.push_back(id);
+  }
+  for (const PatchMatch& patch : estimate.patches) landmarks.push_back(patch.landmark);
+  return landmarks;
+}
+
+PoseEstimate optimise_patches(const Map& map, const Camera& camera, const cv::Mat& depth,
+                              double max_depth_m, const Pose& prior_cam_from_world,
+                              const std::vector<PatchMatch>& matches) {
+  std::vector<PoseObservation> observations;
+  observations.reserve(matches.size());
+  for (const PatchMatch& match : matches) {
+    PoseObservation observation;
+    observation.point_world = map.landmarks.at(match.landmark).position;
+    observation.pixel = match.pixel;
+    observation.sigma_px = match.sigma_px();
+    if (!depth.empty()) observation.depth = depth_at(depth, match.raw, max_depth_m);
+    observations.push_back(observation);
+  }
+  PoseEstimate estimate;
+  estimate.cam_from_world = prior_cam_from_world;
+  if (observations.size() < 4) return estimate;
+  const PoseResult result = optimize_pose(camera, prior_cam_from_world, observations);
+  estimate.cam_from_world = result.cam_from_world;
+  estimate.rms = result.rms;
+  estimate.inliers = result.num_inliers;
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    if (result.inlier[i] != 0) estimate.patches.push_back(matches[i]);
+  }
+  return estimate;
+}
+
+std::vector<LandmarkId> landmarks_of(const Map& map, const std::vector<KeyframeId>& keyframes) {
+  std::vector<char> known(static_cast<std::size_t>(map.landmarks.next_id()), 0);
+  std::vector<LandmarkId> landmarks;
+  for (const KeyframeId keyframe : keyframes) {
+    for (const LandmarkId id : map.keyframes.at(keyframe).landmarks) {
+      if (id == kNone || known[static_cast<std::size_t>(id)] != 0) continue;
+      known[static_cast<std::size_t>(id)] = 1;
+      landmarks.push_back(id);
+    }
+  }
+  return landmarks;
+}
+
+std::vector<KeyframeId> local_keyframes(const Map& map, const std::vector<LandmarkId>& in_view,
                                         const LocaliseOptions& options) {
   std::vector<int> votes(static_cast<std::size_t>(map.keyframes.next_id()), 0);
-  for (const LandmarkId id : matches) {
+  for (const LandmarkId id : in_view) {
     if (id == kNone) continue;
     for (const Observation& observation : map.landmarks.at(id).observations) {
       ++votes[static_cast<std::size_t>(observation.keyframe)];
@@ -62,7 +110,8 @@ std::vector<KeyframeId> local_keyframes(const Map& map, const std::vector<Landma
   for (const KeyframeId id : direct) chosen[static_cast<std::size_t>(id)] = 1;
   const auto most = static_cast<std::size_t>(options.max_local_keyframes);
   // Neighbours of the best few are enough: their own neighbours overlap.
-  for (std::size_t d = 0; d < std::min<std::size_t>(direct.size(), 5) && result.size() < most; ++d) {
+  for (std::size_t d = 0; d < std::min<std::size_t>(direct.size(), 5) && result.size() < most;
+       ++d) {
     int added = 0;
     for (const auto& [id, shared] : map.covisible(direct[d])) {
       if (added == options.neighbours_each) break;

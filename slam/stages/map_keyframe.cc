@@ -22,6 +22,28 @@ void count_visible(Map& map, const KeyframeJob& job) {
   }
 }
 
+/// Landmarks that were merged since the tracker saw the map become their heirs; those that are gone
+/// are left out, and one that two have become is kept once.
+void follow(const Map& map, PoseEstimate& estimate) {
+  std::vector<char> used(static_cast<std::size_t>(map.landmarks.next_id()), 0);
+  const auto heir = [&](LandmarkId id) {
+    const LandmarkId living = id == kNone ? kNone : map.resolve(id);
+    if (living == kNone || used[static_cast<std::size_t>(living)] != 0) return kNone;
+    used[static_cast<std::size_t>(living)] = 1;
+    return living;
+  };
+  for (LandmarkId& id : estimate.matches) id = heir(id);
+  for (PatchMatch& patch : estimate.patches) patch.landmark = heir(patch.landmark);
+  std::erase_if(estimate.patches, [](const PatchMatch& patch) { return patch.landmark == kNone; });
+}
+
+/// Nobody looks at a keyframe's depth and masks again once its planes are mapped, and they are most of
+/// its memory.
+void release_images(Keyframe& keyframe) {
+  keyframe.depth.release();
+  keyframe.label_image.release();
+}
+
 }  // namespace
 
 KeyframeMapper::KeyframeMapper(const KeyframeMapperOptions& options, const Camera& camera,
@@ -29,6 +51,7 @@ KeyframeMapper::KeyframeMapper(const KeyframeMapperOptions& options, const Camer
     : options_(options),
       camera_(camera),
       segmenter_(std::move(segmenter)),
+      preparer_(options.prepare, camera),
       plane_mapper_(options.planes, camera, options.rgbd) {}
 
 void KeyframeMapper::reset() {
@@ -43,11 +66,10 @@ void KeyframeMapper::segment(const ImageFeatures& image, Keyframe& keyframe, Sta
   frame.image = image.grey_or_bgr;
   frame.depth = image.depth;
   frame.labels = image.labels;
+  // The segmenter alone says what counts as a mask, not what happened to come with the frame.
   keyframe.label_image = segmenter_->segment(frame);
-  if (!keyframe.label_image.empty()) {
-    for (std::size_t k = 0; k < keyframe.labels.size(); ++k) {
-      keyframe.labels[k] = label_at(keyframe.label_image, keyframe.features->keypoints[k].raw);
-    }
+  for (std::size_t k = 0; k < keyframe.labels.size(); ++k) {
+    keyframe.labels[k] = label_at(keyframe.label_image, keyframe.features->keypoints[k].raw);
   }
   times.emplace_back("Instance Planar Segmentation", watch.lap_ms());
 }
@@ -65,20 +87,28 @@ KeyframeReport KeyframeMapper::start(Map& map, const std::vector<ImageFeatures>&
     plane_mapper_.cull_non_planar(map, keyframe.id, report.planes);
     plane_mapper_.update(map, keyframe.id, report.planes);
   }
+  for (Keyframe& keyframe : map.keyframes) release_images(keyframe);
   report.times.emplace_back("Point-Plane Map Initialization", watch.lap_ms());
   return report;
 }
 
-KeyframeId KeyframeMapper::put_keyframe(Map& map, const KeyframeJob& job, StageTimes& times) {
+KeyframeId KeyframeMapper::put_keyframe(Map& map, KeyframeJob& job, StageTimes& times) {
   // The map may have moved since the tracker saw it: the pose goes along with its reference.
-  const Pose cam_from_world = job.cam_from_reference * map.keyframe_pose(job.reference);
-  Keyframe keyframe = make_keyframe(job.image, cam_from_world, map);
+  job.estimate.cam_from_world = map.from_keyframe(job.cam_from_reference, job.reference);
+  follow(map, job.estimate);
+  if (job.image.features == nullptr) {
+    Stopwatch watch;
+    job.estimate =
+        describe_keyframe(map, camera_, job.estimate, options_.describe, preparer_, job.image);
+    times.emplace_back("Keyframe Features", watch.lap_ms());
+  }
+  Keyframe keyframe = make_keyframe(job.image, job.estimate.cam_from_world, map);
   const KeyframeId id = keyframe.id;
   keyframe.parent = map.living_ancestor(job.reference);
   if (options_.map_planes) segment(job.image, keyframe, times);
   map.keyframes.put(std::move(keyframe));
-  for (std::size_t k = 0; k < job.matches.size(); ++k) {
-    const LandmarkId landmark = job.matches[k] == kNone ? kNone : map.resolve(job.matches[k]);
+  for (std::size_t k = 0; k < job.estimate.matches.size(); ++k) {
+    const LandmarkId landmark = job.estimate.matches[k];
     if (landmark == kNone) continue;
     map.add_observation(landmark, id, static_cast<int>(k));
     map.update_landmark_summary(landmark, options_.points.levels);
@@ -86,7 +116,20 @@ KeyframeId KeyframeMapper::put_keyframe(Map& map, const KeyframeJob& job, StageT
   return id;
 }
 
-KeyframeReport KeyframeMapper::insert(Map& map, const KeyframeJob& job) {
+void KeyframeMapper::create_points(Map& map, KeyframeId id, const ImageFeatures& image,
+                                   PointMappingStats& stats) {
+  if (options_.search_by_patches) {
+    search_points(map, id, camera_, image.grey_or_bgr, options_.prepare.max_keypoint_depth_m,
+                  options_.search, preparer_.extractor(), stats);
+  } else {
+    create_landmarks(map, id, camera_, options_.rgbd, image.grey_or_bgr, options_.points, stats);
+  }
+  if (options_.rgbd) {
+    create_landmarks_from_depth(map, id, camera_, image.grey_or_bgr, options_.points, stats);
+  }
+}
+
+KeyframeReport KeyframeMapper::insert(Map& map, KeyframeJob job) {
   KeyframeReport report;
   Stopwatch total;
   count_visible(map, job);
@@ -96,8 +139,7 @@ KeyframeReport KeyframeMapper::insert(Map& map, const KeyframeJob& job) {
   cull_landmarks(map, id, options_.rgbd, options_.points, report.points);
   if (options_.map_planes) plane_mapper_.cull_non_planar(map, id, report.planes);
   Stopwatch watch;
-  create_landmarks(map, id, camera_, options_.rgbd, job.image.grey_or_bgr, options_.points,
-                   report.points);
+  create_points(map, id, job.image, report.points);
   report.times.emplace_back("Triangulation", watch.lap_ms());
   fuse_landmarks(map, id, camera_, options_.rgbd, options_.points, report.points);
   report.times.emplace_back("Fusing", watch.lap_ms());
@@ -109,6 +151,7 @@ KeyframeReport KeyframeMapper::insert(Map& map, const KeyframeJob& job) {
     plane_mapper_.follow_map(map);
     append_plane_times(report.planes, report.times);
   }
+  release_images(map.keyframes.at(id));
   cull_keyframes(map, id, options_.points, report.points);
   report.times.emplace_back("Local Mapping", total.lap_ms());
   return report;

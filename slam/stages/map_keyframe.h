@@ -9,10 +9,12 @@
 #include "slam/data/map.h"
 #include "slam/optimize/bundle.h"
 #include "slam/segmentation/plane_segmenter.h"
+#include "slam/stages/describe_keyframe.h"
 #include "slam/stages/initialise.h"
 #include "slam/stages/localise.h"
 #include "slam/stages/map_planes.h"
 #include "slam/stages/map_points.h"
+#include "slam/stages/search_points.h"
 
 namespace planecast::slam {
 
@@ -22,6 +24,10 @@ using StageTimes = std::vector<std::pair<std::string, double>>;
 struct KeyframeMapperOptions {
   bool rgbd = false;
   bool map_planes = true;
+  PrepareOptions prepare;
+  DescribeKeyframeOptions describe;
+  bool search_by_patches = true;  ///< new landmarks by search_points, else by descriptors
+  SearchPointsOptions search;
   PointMappingOptions points;
   PlaneMappingOptions planes;
   BundleOptions bundle;
@@ -29,10 +35,10 @@ struct KeyframeMapperOptions {
 
 /// A frame that is to become a keyframe, as the tracker hands it over.
 struct KeyframeJob {
-  ImageFeatures image;
-  std::vector<LandmarkId> matches;  ///< per keypoint, ids of the tracker's map
+  ImageFeatures image;    ///< with features only where the tracker used them
+  PoseEstimate estimate;  ///< its landmarks are those of the tracker's map
   KeyframeId reference = kNone;
-  Pose cam_from_reference = Pose::Identity();
+  Pose cam_from_reference = Pose::Identity();  ///< as Map::relative_to_keyframe() gives it
   std::vector<LandmarkId> visible;  ///< expected in a frame since the last job, once a frame
   std::vector<LandmarkId> found;    ///< ... and found there
 };
@@ -45,8 +51,8 @@ struct KeyframeReport {
   StageTimes times;
 };
 
-/// Local mapping: everything that happens when a keyframe is inserted, in the paper's order. Works on a
-/// map of its own that nobody else touches meanwhile.
+/// Local mapping: everything that happens when a keyframe is inserted, in the paper's order. Works
+/// on a map of its own that nobody else touches meanwhile.
 class KeyframeMapper {
  public:
   KeyframeMapper(const KeyframeMapperOptions& options, const Camera& camera,
@@ -54,7 +60,7 @@ class KeyframeMapper {
 
   /// Planes of a map that was just initialised. `images`: those of its keyframes, in order.
   KeyframeReport start(Map& map, const std::vector<ImageFeatures>& images);
-  KeyframeReport insert(Map& map, const KeyframeJob& job);
+  KeyframeReport insert(Map& map, KeyframeJob job);
   /// Brings the planes along after the map was changed as a whole.
   void follow_map(Map& map) { plane_mapper_.follow_map(map); }
   PlaneScale plane_scale() const { return plane_mapper_.scale(); }
@@ -62,12 +68,14 @@ class KeyframeMapper {
   void reset();
 
  private:
-  KeyframeId put_keyframe(Map& map, const KeyframeJob& job, StageTimes& times);
+  KeyframeId put_keyframe(Map& map, KeyframeJob& job, StageTimes& times);
+  void create_points(Map& map, KeyframeId id, const ImageFeatures& image, PointMappingStats& stats);
   void segment(const ImageFeatures& image, Keyframe& keyframe, StageTimes& times);
 
   KeyframeMapperOptions options_;
   Camera camera_;
   std::unique_ptr<PlaneSegmenter> segmenter_;
+  ImagePreparer preparer_;
   PlaneMapper plane_mapper_;
 };
 

@@ -6,6 +6,7 @@
 
 #include "slam/features/matching.h"
 #include "slam/geometry/pnp.h"
+#include "slam/stages/recognise_places.h"
 
 namespace planecast::slam {
 namespace {
@@ -58,6 +59,22 @@ PoseEstimate widen_to_local_map(const Map& map, const Camera& camera, const Feat
   return search_local_map(map, camera, features, wide, keyframes, 1.0, options.localise);
 }
 
+/// The keyframes that may show what the image shows.
+std::vector<KeyframeId> keyframes_alike(const Map& map, const Features& features,
+                                        const RelocaliseOptions& options) {
+  std::vector<KeyframeId> alike;
+  if (options.vocabulary == nullptr) {
+    for (const Keyframe& keyframe : map.keyframes) alike.push_back(keyframe.id);
+    return alike;
+  }
+  const BagOfWords words = options.vocabulary->describe(features.descriptors);
+  for (const Place& place :
+       best_places(score_places(map, words), static_cast<std::size_t>(options.alike))) {
+    alike.push_back(place.keyframe);
+  }
+  return alike;
+}
+
 }  // namespace
 
 std::optional<PoseEstimate> match_keyframe(const Map& map, const Camera& camera,
@@ -77,9 +94,10 @@ std::optional<PoseEstimate> relocalise(const Map& map, const Camera& camera,
     std::vector<LandmarkId> matches;
   };
   std::vector<Candidate> candidates;
-  for (const Keyframe& keyframe : map.keyframes) {
+  for (const KeyframeId id : keyframes_alike(map, features, options)) {
     Candidate candidate;
-    candidate.matches = match_descriptors(keyframe, features, options.ratio, candidate.count);
+    candidate.matches =
+        match_descriptors(map.keyframes.at(id), features, options.ratio, candidate.count);
     if (candidate.count >= options.min_matches) candidates.push_back(std::move(candidate));
   }
   std::stable_sort(candidates.begin(), candidates.end(),

@@ -8,11 +8,10 @@
 namespace planecast::slam {
 namespace {
 
-/// The keyframe that sees most of the matched landmarks; the newest among equals.
-KeyframeId reference_of(const Map& map, const std::vector<LandmarkId>& matches) {
+/// The keyframe that sees most of the landmarks; the newest among equals.
+KeyframeId reference_of(const Map& map, const std::vector<LandmarkId>& landmarks) {
   std::vector<int> votes(static_cast<std::size_t>(map.keyframes.next_id()), 0);
-  for (const LandmarkId id : matches) {
-    if (id == kNone) continue;
+  for (const LandmarkId id : landmarks) {
     for (const Observation& observation : map.landmarks.at(id).observations) {
       ++votes[static_cast<std::size_t>(observation.keyframe)];
     }
@@ -38,18 +37,28 @@ void Tracker::start(const ImageFeatures& image, const PoseEstimate& estimate,
   lost_ = false;
   last_image_ = image;
   last_ = estimate;
+  last_landmarks_ = supporting_landmarks(estimate);
   velocity_ = Pose::Identity();
   reference_ = reference;
   cam_from_reference_ = Pose::Identity();
-  last_keyframe_frame_ = image.frame_index;
+  local_map_frame_ = -1;
+  keyframe_requested(image.frame_index);
+}
+
+void Tracker::keyframe_requested(int frame_index) {
+  last_keyframe_frame_ = frame_index;
+  most_found_ = 0;
 }
 
 void Tracker::follow_map(const Map& map) {
+  local_map_frame_ = -1;
   if (lost_) return;
   for (LandmarkId& id : last_.matches) {
     if (id != kNone) id = map.resolve(id);
   }
-  last_.cam_from_world = cam_from_reference_ * map.keyframe_pose(reference_);
+  for (LandmarkId& id : last_landmarks_) id = map.resolve(id);
+  std::erase(last_landmarks_, kNone);
+  last_.cam_from_world = map.from_keyframe(cam_from_reference_, reference_);
 }
 
 PoseEstimate Tracker::match_from_last(const ImageFeatures& image, const Map& map,
@@ -85,14 +94,33 @@ PoseEstimate Tracker::match_from_last(const ImageFeatures& image, const Map& map
                           options_.localise.levels);
 }
 
+/// From a pose alone, where the last image had no features.
+PoseEstimate Tracker::search_about(const ImageFeatures& image, const Map& map,
+                                   const Pose& predicted) const {
+  PoseEstimate prior;
+  prior.cam_from_world = predicted;
+  prior.matches.assign(image.features->keypoints.size(), kNone);
+  for (const double widen : {3.0, 8.0}) {
+    const PoseEstimate estimate = search_local_map(map, camera_, *image.features, prior,
+                                                   local_keyframes_, widen, options_.localise);
+    if (estimate.inliers >= options_.min_motion_matches) return estimate;
+  }
+  return {};
+}
+
 PoseEstimate Tracker::predict_and_match(const ImageFeatures& image, const Map& map) const {
   const double window_px =
       options_.motion_window_px * std::max(camera_.width, camera_.height) / 640.0;
   const Pose predicted = velocity_ * last_.cam_from_world;
-  for (const double widen : {1.0, 2.0, 4.0}) {
-    const Pose& prior = widen < 3.0 ? predicted : last_.cam_from_world;
-    PoseEstimate estimate = match_from_last(image, map, prior, widen * window_px);
-    if (estimate.inliers >= options_.min_motion_inliers) return estimate;
+  if (last_image_.features == nullptr) {
+    PoseEstimate estimate = search_about(image, map, predicted);
+    if (estimate.inliers > 0) return estimate;
+  } else {
+    for (const double widen : {1.0, 2.0, 4.0}) {
+      const Pose& prior = widen < 3.0 ? predicted : last_.cam_from_world;
+      PoseEstimate estimate = match_from_last(image, map, prior, widen * window_px);
+      if (estimate.inliers >= options_.min_motion_inliers) return estimate;
+    }
   }
   if (map.keyframes.contains(reference_)) {
     std::optional<PoseEstimate> estimate =
@@ -126,11 +154,81 @@ bool Tracker::wants_keyframe(const ImageFeatures& image, const Map& map,
   const bool weaker = result.estimate.inliers < share * reference_landmarks || needs_close;
   if (!weaker) return false;
   if (since >= options_.max_keyframe_interval) return true;
-  return since >= (result.estimate.inliers < options_.weak_inliers ? 1
-                                                                   : options_.min_keyframe_interval);
+  return since >=
+         (result.estimate.inliers < options_.weak_inliers ? 1 : options_.min_keyframe_interval);
 }
 
-TrackResult Tracker::track(const ImageFeatures& image, const Map& map) {
+bool Tracker::wants_keyframe_for_patches(const ImageFeatures& image, const Map& map,
+                                         const TrackResult& result) {
+  most_found_ = std::max(most_found_, result.estimate.inliers);
+  const int since = image.frame_index - last_keyframe_frame_;
+  if (since < options_.min_keyframe_interval) return false;
+  if (result.estimate.inliers < options_.keyframe_share_patches * most_found_) return true;
+
+  const Pose& cam_from_world = result.estimate.cam_from_world;
+  std::vector<double> depths;
+  for (const PatchMatch& match : result.estimate.patches) {
+    depths.push_back((cam_from_world * map.landmarks.at(match.landmark).position).z());
+  }
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  const Eigen::Vector3d centre = cam_from_world.inverse().translation();
+  constexpr double kSameViewCosine = 0.94;  // 20 degrees between the optical axes
+  for (const KeyframeId id : local_keyframes_) {
+    const Keyframe& keyframe = map.keyframes.at(id);
+    const double axes = keyframe.cam_from_world.linear().row(2).dot(cam_from_world.linear().row(2));
+    if (axes < kSameViewCosine) continue;
+    if ((keyframe.centre_world() - centre).norm() < options_.keyframe_distance * *middle) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void Tracker::gather_local_map(int frame_index, const Map& map) {
+  if (local_map_frame_ >= 0 && frame_index - local_map_frame_ < options_.local_map_age) return;
+  local_map_frame_ = frame_index;
+  local_keyframes_ = local_keyframes(map, last_landmarks_, options_.localise);
+  local_landmarks_ = landmarks_of(map, local_keyframes_);
+}
+
+std::optional<Pose> Tracker::align_with_last(const ImageFeatures& image, const Map& map) const {
+  std::vector<Eigen::Vector3d> points;
+  points.reserve(last_landmarks_.size());
+  for (const LandmarkId id : last_landmarks_) {
+    points.push_back(last_.cam_from_world * map.landmarks.at(id).position);
+  }
+  for (const Pose& guess : {velocity_, Pose(Pose::Identity())}) {
+    const std::optional<Pose> cam_from_last =
+        align_frame(camera_, *last_image_.pyramid, points, *image.pyramid, guess, options_.align);
+    if (cam_from_last) return *cam_from_last * last_.cam_from_world;
+  }
+  return std::nullopt;
+}
+
+TrackResult Tracker::track_patches(const ImageFeatures& image, const Map& map) {
+  TrackResult result;
+  result.needs_features = true;
+  if (lost_) return result;
+  gather_local_map(image.frame_index, map);
+  const std::optional<Pose> aligned = align_with_last(image, map);
+  if (!aligned) return result;
+  const PatchMatches found =
+      match_patches(map, camera_, *image.pyramid, *aligned, local_landmarks_, options_.patches);
+  PoseEstimate estimate = optimise_patches(map, camera_, image.depth, options_.max_keypoint_depth_m,
+                                           *aligned, found.matches);
+  if (estimate.inliers < options_.min_inliers ||
+      estimate.inliers < options_.min_patch_share * static_cast<double>(found.tried.size())) {
+    return result;
+  }
+  estimate.visible = found.tried;
+  result.needs_features = false;
+  result.tracked = true;
+  result.estimate = std::move(estimate);
+  return result;
+}
+
+TrackResult Tracker::track_features(const ImageFeatures& image, const Map& map) {
   TrackResult result;
   PoseEstimate estimate;
   if (!lost_) {
@@ -151,21 +249,36 @@ TrackResult Tracker::track(const ImageFeatures& image, const Map& map) {
     }
   }
   if (!result.tracked) {
-    lost_ = true;
     result.reason = image.features->size() < 200 ? "too few features" : "too few matches";
-    return result;
   }
+  result.estimate = std::move(estimate);
+  return result;
+}
+
+void Tracker::accept(const ImageFeatures& image, const Map& map, TrackResult& result) {
+  const PoseEstimate& estimate = result.estimate;
   const bool continuous = !lost_ && !result.relocalised;
-  velocity_ = continuous ? estimate.cam_from_world * last_.cam_from_world.inverse()
-                         : Pose::Identity();
+  velocity_ =
+      continuous ? estimate.cam_from_world * last_.cam_from_world.inverse() : Pose::Identity();
+  if (!continuous) local_map_frame_ = -1;
   lost_ = false;
   last_image_ = image;
   last_ = estimate;
-  reference_ = result.reference = reference_of(map, estimate.matches);
-  cam_from_reference_ =
-      estimate.cam_from_world * map.keyframes.at(reference_).cam_from_world.inverse();
-  result.estimate = std::move(estimate);
-  result.want_keyframe = wants_keyframe(image, map, result);
+  last_landmarks_ = supporting_landmarks(estimate);
+  reference_ = result.reference = reference_of(map, last_landmarks_);
+  cam_from_reference_ = map.relative_to_keyframe(estimate.cam_from_world, reference_);
+  result.want_keyframe = image.features == nullptr ? wants_keyframe_for_patches(image, map, result)
+                                                   : wants_keyframe(image, map, result);
+}
+
+TrackResult Tracker::track(const ImageFeatures& image, const Map& map) {
+  TrackResult result =
+      image.features == nullptr ? track_patches(image, map) : track_features(image, map);
+  if (result.tracked) {
+    accept(image, map, result);
+  } else if (!result.needs_features) {
+    lost_ = true;
+  }
   return result;
 }
 

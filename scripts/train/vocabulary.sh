@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# Makes assets/vocabulary/orb.bin anew: draws the built-in scenes with seeds that no test uses, three
+# frames a second, and trains the tree on their features. What went into it is recorded beside it.
+#   scripts/train/vocabulary.sh [folder for the pictures]
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+
+pictures=${1:-out/vocabulary}
+build=build/release
+seeds="101 102 103 104"
+scenes="tabletop corner room plane plain-room corridor stair rotation-start"
+training_seed=1
+
+[ -f $build/build.ninja ] || cmake --preset release
+cmake --build $build --target planecast train_vocabulary
+
+sequences=()
+for seed in $seeds; do
+  for scene in $scenes; do
+    folder=$pictures/$scene-$seed
+    [ -f "$folder/planes.json" ] ||
+      $build/planecast synth "$scene" -o "$folder" --seed "$seed" --fps 3 --no-progress --quiet
+    sequences+=("$folder")
+  done
+done
+
+mkdir -p assets/vocabulary
+{
+  echo "Vocabulary tree over ORB descriptors, made by scripts/train/vocabulary.sh"
+  echo "scenes $scenes"
+  echo "scene seeds $seeds, 3 frames a second, 640x480"
+  $build/scripts/train/train_vocabulary assets/vocabulary/orb.bin $training_seed "${sequences[@]}"
+} | tee assets/vocabulary/orb.txt

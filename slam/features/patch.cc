@@ -1,0 +1,168 @@
+#include "slam/features/patch.h"
+
+#include <Eigen/LU>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace planecast::slam {
+namespace {
+
+/// Offset of the first sample from the patch's centre: the patch has an even side.
+constexpr float kFirst = -0.5F * (kPatchSide - 1);
+constexpr int kRim = kPatchSide + 2;  ///< with one sample around it, for the gradients
+/// Least eigenvalue of the gradients' second moments, per pixel: in squared grey values.
+constexpr float kMinMoment = 2.0F;
+
+float bilinear(const cv::Mat& image, float x, float y) {
+  const int x0 = static_cast<int>(x);
+  const int y0 = static_cast<int>(y);
+  const float fx = x - static_cast<float>(x0);
+  const float fy = y - static_cast<float>(y0);
+  const uchar* upper = image.ptr<uchar>(y0) + x0;
+  const uchar* lower = upper + image.step[0];
+  const float top = static_cast<float>(upper[0]) + fx * static_cast<float>(upper[1] - upper[0]);
+  const float bottom = static_cast<float>(lower[0]) + fx * static_cast<float>(lower[1] - lower[0]);
+  return top + fy * (bottom - top);
+}
+
+bool inside(const cv::Mat& image, const Eigen::Vector2f& pixel) {
+  return pixel.x() >= 0.0F && pixel.y() >= 0.0F && pixel.x() < static_cast<float>(image.cols - 1) &&
+         pixel.y() < static_cast<float>(image.rows - 1);
+}
+
+/// Samples the patch with a rim of one sample; false beyond the image.
+bool sample_with_rim(const cv::Mat& image, const Eigen::Vector2f& centre,
+                     const Eigen::Matrix2f& ref_from_patch, std::array<float, kRim * kRim>& rim) {
+  const float first = kFirst - 1.0F;
+  const float last = first + kRim - 1;
+  for (const float v : {first, last}) {
+    for (const float u : {first, last}) {
+      if (!inside(image, centre + ref_from_patch * Eigen::Vector2f(u, v))) return false;
+    }
+  }
+  const Eigen::Vector2f along = ref_from_patch.col(0);
+  const Eigen::Vector2f down = ref_from_patch.col(1);
+  for (int v = 0; v < kRim; ++v) {
+    const Eigen::Vector2f begin = centre + first * along + (first + static_cast<float>(v)) * down;
+    for (int u = 0; u < kRim; ++u) {
+      const auto reach = static_cast<float>(u);
+      rim[static_cast<std::size_t>(v * kRim + u)] =
+          bilinear(image, begin.x() + reach * along.x(), begin.y() + reach * along.y());
+    }
+  }
+  return true;
+}
+
+/// The patch at an unrotated, unscaled place. The caller has checked the bounds.
+void sample_upright(const cv::Mat& image, const Eigen::Vector2f& centre, PatchValues& values) {
+  const float x = centre.x() + kFirst;
+  const float y = centre.y() + kFirst;
+  const int x0 = static_cast<int>(x);
+  const int y0 = static_cast<int>(y);
+  const float fx = x - static_cast<float>(x0);
+  const float fy = y - static_cast<float>(y0);
+  const float w00 = (1.0F - fx) * (1.0F - fy);
+  const float w01 = fx * (1.0F - fy);
+  const float w10 = (1.0F - fx) * fy;
+  const float w11 = fx * fy;
+  for (int v = 0; v < kPatchSide; ++v) {
+    const uchar* upper = image.ptr<uchar>(y0 + v) + x0;
+    const uchar* lower = upper + image.step[0];
+    float* out = values.data() + v * kPatchSide;
+    for (int u = 0; u < kPatchSide; ++u) {
+      out[u] = w00 * static_cast<float>(upper[u]) + w01 * static_cast<float>(upper[u + 1]) +
+               w10 * static_cast<float>(lower[u]) + w11 * static_cast<float>(lower[u + 1]);
+    }
+  }
+}
+
+/// Whether the whole patch about `centre` lies in the image.
+bool holds_patch(const cv::Mat& image, const Eigen::Vector2f& centre) {
+  const float reach = -kFirst;
+  return centre.x() >= reach && centre.y() >= reach &&
+         centre.x() < static_cast<float>(image.cols - 1) - reach &&
+         centre.y() < static_cast<float>(image.rows - 1) - reach;
+}
+
+struct Comparison {
+  float correlation = 0.0F;
+  Eigen::Vector2f gradient;  ///< sum of template gradient times difference
+};
+
+Comparison compare(const PatchTemplate& patch, PatchValues& current) {
+  current -= current.mean();
+  const float norm = std::sqrt(current.square().sum());
+  if (norm < 1e-3F) return {0.0F, Eigen::Vector2f::Zero()};
+  const Eigen::Vector2f current_by_gradient((current * patch.grad_x).sum(),
+                                            (current * patch.grad_y).sum());
+  Comparison result;
+  result.correlation = (current * patch.value).sum() / (norm * patch.norm);
+  result.gradient = patch.norm / norm * current_by_gradient - patch.value_by_gradient;
+  return result;
+}
+
+}  // namespace
+
+std::optional<PatchTemplate> make_template(const cv::Mat& image, const Eigen::Vector2f& centre,
+                                           const Eigen::Matrix2f& ref_from_patch) {
+  std::array<float, kRim * kRim> rim;
+  if (!sample_with_rim(image, centre, ref_from_patch, rim)) return std::nullopt;
+  PatchTemplate patch;
+  for (int v = 0; v < kPatchSide; ++v) {
+    for (int u = 0; u < kPatchSide; ++u) {
+      const int i = v * kPatchSide + u;
+      const auto r = static_cast<std::size_t>((v + 1) * kRim + u + 1);
+      patch.value[i] = rim[r];
+      patch.grad_x[i] = 0.5F * (rim[r + 1] - rim[r - 1]);
+      patch.grad_y[i] = 0.5F * (rim[r + kRim] - rim[r - kRim]);
+    }
+  }
+  patch.value -= patch.value.mean();
+  patch.grad_x -= patch.grad_x.mean();
+  patch.grad_y -= patch.grad_y.mean();
+  const float xx = patch.grad_x.square().sum();
+  const float yy = patch.grad_y.square().sum();
+  const float xy = (patch.grad_x * patch.grad_y).sum();
+  const float smaller = 0.5F * (xx + yy) - std::sqrt(0.25F * (xx - yy) * (xx - yy) + xy * xy);
+  if (!(smaller > kMinMoment * kPatchArea)) return std::nullopt;
+  patch.norm = std::sqrt(patch.value.square().sum());
+  patch.value_by_gradient = {(patch.value * patch.grad_x).sum(),
+                             (patch.value * patch.grad_y).sum()};
+  Eigen::Matrix2f hessian;
+  hessian << xx, xy, xy, yy;
+  patch.inverse_hessian = hessian.inverse();
+  return patch;
+}
+
+float correlate(const PatchTemplate& patch, const cv::Mat& image, const Eigen::Vector2f& centre) {
+  if (!holds_patch(image, centre)) return -1.0F;
+  PatchValues current;
+  sample_upright(image, centre, current);
+  // The template has zero mean, so that the image's mean drops out of the product.
+  const float sum = current.sum();
+  const float square = current.square().sum() - sum * sum / kPatchArea;
+  if (square < 1.0F) return -1.0F;
+  return (current * patch.value).sum() / (std::sqrt(square) * patch.norm);
+}
+
+std::optional<PatchAlignment> align_patch(const PatchTemplate& patch, const cv::Mat& image,
+                                          const Eigen::Vector2f& start,
+                                          const PatchAlignOptions& options) {
+  PatchAlignment alignment;
+  alignment.pixel = start;
+  PatchValues current;
+  for (int i = 0; i < options.iterations; ++i) {
+    if (!holds_patch(image, alignment.pixel)) return std::nullopt;
+    sample_upright(image, alignment.pixel, current);
+    const Comparison comparison = compare(patch, current);
+    alignment.correlation = comparison.correlation;
+    const Eigen::Vector2f step = patch.inverse_hessian * comparison.gradient;
+    alignment.pixel -= step;
+    if (!((alignment.pixel - start).norm() < options.max_shift_px)) return std::nullopt;
+    if (step.norm() < options.converged_px) return alignment;
+  }
+  return std::nullopt;
+}
+
+}  // namespace planecast::slam

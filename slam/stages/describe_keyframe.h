@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "slam/data/camera.h"
+#include "slam/data/map.h"
+#include "slam/stages/localise.h"
+#include "slam/stages/match_patches.h"
+#include "slam/stages/prepare_image.h"
+
+namespace planecast::slam {
+
+struct DescribeKeyframeOptions {
+  double snap_px =
+      2.0;  ///< a feature so near to a landmark's patch, at its level, is that landmark's
+  LocaliseOptions localise;
+  PatchMatchOptions patches;
+};
+
+/// Gives ORB features to an image that was tracked by patches and is to become a keyframe.
+/// Landmarks found by their looks keep the precise positions: the feature there is moved to it, or
+/// one is added. The other landmarks about are matched by descriptor, and their features moved to
+/// where the looks agree best. `estimate`: of the tracker, in `map`. Returns the estimate over the
+/// features.
+PoseEstimate describe_keyframe(const Map& map, const Camera& camera, const PoseEstimate& estimate,
+                               const DescribeKeyframeOptions& options, ImagePreparer& preparer,
+                               ImageFeatures& image);
+
+}  // namespace planecast::slam
