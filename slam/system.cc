@@ -26,10 +26,9 @@ SystemOptions with_common_values(SystemOptions options) {
   options.initialise.features = options.initial_features;
   options.initialise.by_patches = options.track.front_end == FrontEnd::kPatches;
   if (options.initialise.by_patches) {
-    // Followed corners are good to a fifth of a pixel, so that half the parallax tells depth as well
-    // as twice as much does with whole-pixel features.
-    options.initialise.two_view.sigma_px = 0.5;
-    options.initialise.two_view.min_parallax_deg = 0.5;
+    // Followed corners are good to a fraction of a pixel, so that less parallax tells as much.
+    options.initialise.two_view.sigma_px = 0.3;
+    options.initialise.two_view.min_parallax_deg = 0.4;
   }
   options.initialise.seed = options.seed;
   options.track.localise.levels = levels;
