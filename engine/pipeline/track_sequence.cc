@@ -139,9 +139,9 @@ class TwoPassTracker {
 
   Reconstruction run() {
     first_pass();
-    for (const auto& [stage, ms] : system_.finish().mapping_times) {
-      mapping_times_[stage].push_back(ms);
-    }
+    const slam::FinishResult finished = system_.finish();
+    for (const auto& [stage, ms] : finished.mapping_times) mapping_times_[stage].push_back(ms);
+    joint_ = finished.joint;
     take_over_references();
     if (!options_.causal) second_pass();
     return records();
@@ -169,6 +169,7 @@ class TwoPassTracker {
   std::vector<Tracked> tracked_;
   std::vector<StageTimes> times_;
   std::map<std::string, std::vector<double>> mapping_times_;
+  slam::JointResult joint_;
 };
 
 void TwoPassTracker::record_first(int position, const slam::FrameTrack& track) {
@@ -288,6 +289,10 @@ void TwoPassTracker::second_pass() {
 Reconstruction TwoPassTracker::records() {
   Reconstruction result = map_to_records(system_.map(), system_.camera(), rgbd_);
   result.mode = rgbd_ ? "rgbd" : "mono";
+  if (joint_.plane_rms_before > 0.0) {
+    result.plane_rms = PlaneRms{joint_.plane_rms_before,
+                        joint_.kept ? joint_.plane_rms_after : joint_.plane_rms_before};
+  }
   result.frames = std::move(frames_);
   result.frame_times = std::move(times_);
   result.mapping_times = std::move(mapping_times_);
