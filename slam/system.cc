@@ -84,6 +84,13 @@ ImageFeatures System::prepare(const FrameInput& frame, bool initialised) const {
   return image;
 }
 
+void System::load(Map map) {
+  working_map_ = std::move(map);
+  if (options_.vocabulary != nullptr) describe_keyframes(working_map_, *options_.vocabulary);
+  visible_map_ = std::make_shared<const Map>(working_map_);
+  loaded_ = true;
+}
+
 void System::restart() {
   FrameTrack ignored;
   take_over_all(ignored);
@@ -243,7 +250,7 @@ FrameTrack System::track(ImageFeatures image) {
   take_over_due(image.frame_index, result);
   enqueue_open_loop(image.frame_index);
   take_over_due(image.frame_index, result);
-  if (lost_frames_ >= options_.restart_after_lost &&
+  if (!loaded_ && lost_frames_ >= options_.restart_after_lost &&
       static_cast<int>(map().keyframes.size()) < options_.restart_keyframes) {
     restart();
     result.restarted = true;

@@ -81,6 +81,10 @@ class System {
          std::unique_ptr<PlaneSegmenter> segmenter);
   ~System();
 
+  /// Starts from an earlier map of the same camera instead of an empty one: the first frames are
+  /// relocalised in it and mapping goes on from there. Before the first frame.
+  void load(Map map);
+
   /// What tracking needs of a frame: its pyramid, and features where the front end or the start of
   /// the map wants them (more before it is `initialised`). May run on another thread than track(),
   /// one call at a time.
@@ -148,6 +152,7 @@ class System {
   std::optional<OpenLoop> open_loop_;
   KeyframeJob next_job_;  ///< gathers the counters for it
   int lost_frames_ = 0;
+  bool loaded_ = false;  ///< the map came from elsewhere and is never thrown away
 };
 
 }  // namespace planecast::slam

@@ -1,12 +1,15 @@
 #include "engine/pipeline/track_sequence.h"
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <future>
 #include <memory>
 #include <utility>
 
 #include "engine/assets.h"
+#include "engine/pipeline/map_bin.h"
 #include "engine/pipeline/map_to_records.h"
 #include "engine/scene/plane_classes.h"
 #include "engine/user_error.h"
@@ -67,6 +70,48 @@ slam::SystemOptions system_options(const TrackSequenceOptions& options, bool rgb
   return result;
 }
 
+/// What an earlier run left behind, for this sequence to go on from.
+struct EarlierMap {
+  slam::Camera camera;
+  bool metric = false;
+  std::shared_ptr<const slam::Map> map;  ///< null: there is none
+};
+
+bool same_camera(const slam::Camera& a, const slam::Camera& b) {
+  constexpr double kFocalShare = 1e-3;
+  constexpr double kCentrePx = 0.5;
+  return a.lens == b.lens && std::abs(a.fx - b.fx) < kFocalShare * std::abs(a.fx) &&
+         std::abs(a.fy - b.fy) < kFocalShare * std::abs(a.fy) &&
+         std::abs(a.cx - b.cx) < kCentrePx && std::abs(a.cy - b.cy) < kCentrePx &&
+         a.distortion == b.distortion;
+}
+
+/// A guessed camera is the one that the map has refined.
+EarlierMap read_earlier_map(const std::string& folder, const Sequence& sequence, bool rgbd) {
+  EarlierMap earlier{sequence.camera(), rgbd, nullptr};
+  if (folder.empty()) return earlier;
+  const std::filesystem::path path = std::filesystem::path(folder) / "map.bin";
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) {
+    throw UserError(folder + ": is not a reconstruction folder (it has no map.bin)");
+  }
+  Reconstruction reconstruction;
+  read_map_bin(path, reconstruction, true);
+  if (reconstruction.map == nullptr || reconstruction.map->keyframes.empty()) {
+    throw UserError(path.string() + ": has no map to go on from");
+  }
+  const slam::Camera& camera = reconstruction.camera;
+  const slam::Camera& wanted = sequence.camera();
+  if (camera.width != wanted.width || camera.height != wanted.height ||
+      (!(camera.guessed && wanted.guessed) && !same_camera(camera, wanted))) {
+    throw UserError(path.string() + ": was made with another camera than this sequence's");
+  }
+  if (rgbd && !reconstruction.metric) {
+    throw UserError(path.string() + ": has no metric scale; use --mode mono");
+  }
+  return {camera, reconstruction.metric, reconstruction.map};
+}
+
 /// Reads and prepares frames one ahead of the one in use, on a second thread where allowed. Whether the
 /// map was initialised is known two frames late, always, so that threads change nothing.
 class FramesAhead {
@@ -116,13 +161,18 @@ class TwoPassTracker {
         options_(options),
         progress_(progress),
         rgbd_(use_depth(sequence, options.mode)),
-        system_(system_options(options, rgbd_), sequence.camera(),
+        earlier_(read_earlier_map(options.map, sequence, rgbd_)),
+        system_(system_options(options, rgbd_), earlier_.camera,
                 choose_segmenter(sequence, rgbd_, options.segmentation)),
         first_(sequence.first_frame()),
         count_(sequence.end_frame() - sequence.first_frame()) {
     frames_.resize(static_cast<std::size_t>(count_));
     tracked_.resize(static_cast<std::size_t>(count_));
     times_.resize(static_cast<std::size_t>(count_));
+    if (earlier_.map != nullptr) {
+      system_.load(*earlier_.map);
+      first_own_keyframe_ = earlier_.map->keyframes.next_id();
+    }
   }
 
   Reconstruction run() {
@@ -150,7 +200,9 @@ class TwoPassTracker {
   const TrackSequenceOptions& options_;
   const Progress& progress_;
   bool rgbd_;
+  EarlierMap earlier_;
   slam::System system_;
+  slam::KeyframeId first_own_keyframe_ = 0;
   int first_;
   int count_;
   std::vector<FrameRecord> frames_;
@@ -183,7 +235,7 @@ void TwoPassTracker::record_first(int position, const slam::FrameTrack& track) {
 
 void TwoPassTracker::first_pass() {
   FramesAhead ahead(sequence_, system_, options_.threads > 1);
-  ahead.request(first_, false);
+  ahead.request(first_, system_.initialised());
   for (int position = 0; position < count_; ++position) {
     FramesAhead::Prepared prepared = ahead.take();
     const bool initialised = system_.initialised();
@@ -272,7 +324,9 @@ void TwoPassTracker::second_pass() {
 }
 
 Reconstruction TwoPassTracker::records() {
-  Reconstruction result = map_to_records(system_.map(), system_.camera(), rgbd_);
+  Reconstruction result =
+      map_to_records(system_.map(), system_.camera(), earlier_.metric, first_own_keyframe_);
+  result.map = std::make_shared<const slam::Map>(system_.map());
   result.mode = rgbd_ ? "rgbd" : "mono";
   result.frames = std::move(frames_);
   result.frame_times = std::move(times_);

@@ -21,13 +21,16 @@ struct TrackSequenceOptions {
   std::string plane_merge = "default";  ///< default | paper
   int features = 1000;
   bool close_loops = true;
+  std::string map;  ///< reconstruction folder to go on from; empty: start anew
 };
 
 /// Called with (done, total) after each frame of either pass.
 using Progress = std::function<void(int done, int total)>;
 
 /// SLAM over the whole sequence; then, unless causal, every frame is localised against the finished map.
-/// Throws UserError for bad options and for a frame that cannot be read (without skip_unreadable).
+/// With an earlier map the sequence is localised in it, mapping goes on from there, and the world and its
+/// units are the map's; keyframes and frames of the result are those of the sequence alone.
+/// Throws UserError for bad options, a map that cannot be used, and for a frame that cannot be read (without skip_unreadable).
 Reconstruction track_sequence(Sequence& sequence, const TrackSequenceOptions& options,
                               const Progress& progress);
 
