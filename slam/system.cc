@@ -162,16 +162,16 @@ void System::enqueue(int frame_index, int visible_at, MapJob job) {
   if (!in_flight_.empty()) {
     flight.visible_at = std::max(flight.visible_at, in_flight_.back().visible_at + 1);
   }
-  flight.result =
-      std::async(options_.threads > 1 ? std::launch::async : std::launch::deferred,
-                 [this, earlier, job = std::move(job)]() mutable {
-                   // Let go of it, or each result would hold all before it, with their maps.
-                   if (earlier.valid()) std::exchange(earlier, {}).wait();
-                   Mapped mapped = job();
-                   mapped.map = std::make_shared<const Map>(working_map_);
-                   return mapped;
-                 })
-          .share();
+  flight.result = std::async(options_.threads > 1 ? std::launch::async : std::launch::deferred,
+                             [this, earlier, job = std::move(job)]() mutable {
+                               // Let go of it, or each result would hold all before it, with their
+                               // maps.
+                               if (earlier.valid()) std::exchange(earlier, {}).wait();
+                               Mapped mapped = job();
+                               mapped.map = std::make_shared<const Map>(working_map_);
+                               return mapped;
+                             })
+                      .share();
   in_flight_.push_back(std::move(flight));
 }
 

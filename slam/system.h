@@ -26,8 +26,8 @@ struct SystemOptions {
   bool rgbd = false;
   std::uint64_t seed = 1;
   int threads = 2;  ///< 1: mapping runs inline, on the same schedule and with the same results
-  int mapping_delay = 4;  ///< frames after which a keyframe's result is visible; 0 = lock-step
-  int loop_delay = 30;    ///< frames after a loop's keyframe until the closed loop is visible
+  int mapping_delay = 4;    ///< frames after which a keyframe's result is visible; 0 = lock-step
+  int loop_delay = 30;      ///< frames after a loop's keyframe until the closed loop is visible
   bool close_loops = true;  ///< needs the vocabulary
   std::shared_ptr<const Vocabulary> vocabulary;  ///< for place recognition; may be null
   OrbOptions orb;

@@ -48,8 +48,8 @@ slam::Camera take_camera(ByteReader& in, const std::filesystem::path& path) {
   for (double& value : camera.distortion) value = in.number<double>();
   camera.guessed = in.number<std::uint8_t>() != 0;
   constexpr int kMostPixels = 1 << 15;
-  const bool size_is_sound = camera.width > 0 && camera.height > 0 &&
-                             camera.width <= kMostPixels && camera.height <= kMostPixels;
+  const bool size_is_sound = camera.width > 0 && camera.height > 0 && camera.width <= kMostPixels &&
+                             camera.height <= kMostPixels;
   if (!size_is_sound || !(camera.fx > 0.0) || !(std::abs(camera.fy) > 0.0)) {
     fail(path, "has an impossible camera");
   }
@@ -100,8 +100,7 @@ void take_pictures(ByteReader& in, const std::filesystem::path& path, const slam
     if (grey.cols != camera.width || grey.rows != camera.height) {
       fail(path, "has a broken picture");
     }
-    keyframe->pyramid =
-        std::make_shared<const slam::ImagePyramid>(slam::build_pyramid(grey));
+    keyframe->pyramid = std::make_shared<const slam::ImagePyramid>(slam::build_pyramid(grey));
   }
 }
 
@@ -116,8 +115,8 @@ std::string_view checked_body(std::string_view bytes, const std::filesystem::pat
   ByteReader in(bytes.substr(kMagic.size()));
   const auto version = in.number<std::uint32_t>();
   if (in.ok() && version != kVersion) {
-    fail(path, fmt::format("has version {}, not {}: make the reconstruction anew", version,
-                           kVersion));
+    fail(path,
+         fmt::format("has version {}, not {}: make the reconstruction anew", version, kVersion));
   }
   const auto size = in.number<std::uint64_t>();
   const auto checksum = in.number<std::uint64_t>();

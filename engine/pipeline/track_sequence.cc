@@ -112,8 +112,8 @@ EarlierMap read_earlier_map(const std::string& folder, const Sequence& sequence,
   return {camera, reconstruction.metric, reconstruction.map};
 }
 
-/// Reads and prepares frames one ahead of the one in use, on a second thread where allowed. Whether the
-/// map was initialised is known two frames late, always, so that threads change nothing.
+/// Reads and prepares frames one ahead of the one in use, on a second thread where allowed. Whether
+/// the map was initialised is known two frames late, always, so that threads change nothing.
 class FramesAhead {
  public:
   FramesAhead(Sequence& sequence, const slam::System& system, bool threaded)
@@ -277,8 +277,8 @@ bool TwoPassTracker::localise_frame(int position, const std::optional<slam::Pose
   return true;
 }
 
-/// Localises the frames begin, begin + step, ... before end; those without a pose of their own start
-/// from the frame before them in this order.
+/// Localises the frames begin, begin + step, ... before end; those without a pose of their own
+/// start from the frame before them in this order.
 void TwoPassTracker::localise_run(int begin, int end, int step, int& done) {
   FramesAhead ahead(sequence_, system_, options_.threads > 1);
   if (begin != end) ahead.request(first_ + begin, true);

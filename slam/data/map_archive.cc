@@ -306,8 +306,8 @@ bool MapArchive::history_is_sound(const Map& map) {
   for (const auto& [from, to] : map.replaced_) {
     LandmarkId id = from;
     for (std::size_t steps = 0; !map.landmarks.contains(id); ++steps) {
-      const auto place = std::lower_bound(map.replaced_.begin(), map.replaced_.end(),
-                                          std::pair(id, kNone));
+      const auto place =
+          std::lower_bound(map.replaced_.begin(), map.replaced_.end(), std::pair(id, kNone));
       if (place == map.replaced_.end() || place->first != id) break;
       if (steps > map.replaced_.size()) return false;
       id = place->second;
@@ -350,9 +350,12 @@ bool MapArchive::is_sound(const Map& map) {
 
 std::string MapArchive::encode(const Map& map) {
   ByteWriter out;
-  put_store(map.keyframes, [&](const Keyframe& value) { put(value, out); }, out);
-  put_store(map.landmarks, [&](const Landmark& value) { put(value, out); }, out);
-  put_store(map.planes, [&](const Plane& value) { put(value, out); }, out);
+  put_store(
+      map.keyframes, [&](const Keyframe& value) { put(value, out); }, out);
+  put_store(
+      map.landmarks, [&](const Landmark& value) { put(value, out); }, out);
+  put_store(
+      map.planes, [&](const Plane& value) { put(value, out); }, out);
   put_history(map, out);
   return out.bytes();
 }

@@ -77,15 +77,15 @@ TEST(MapBin, BadFilesGiveOneLine) {
   const auto error_of = [&](const std::string& content) {
     write_file(folder / "bad.bin", content);
     Reconstruction read;
-    const std::string error =
-        user_error_of([&] { read_map_bin(folder / "bad.bin", read, true); });
+    const std::string error = user_error_of([&] { read_map_bin(folder / "bad.bin", read, true); });
     EXPECT_NE(error.find("bad.bin"), std::string::npos) << error;
     EXPECT_EQ(error.find('\n'), std::string::npos) << error;
     return error;
   };
   EXPECT_NE(error_of("").find("not a map"), std::string::npos);
   EXPECT_NE(error_of(std::string(64, 'x')).find("not a map"), std::string::npos);
-  for (const std::size_t length : {std::size_t{9}, std::size_t{20}, std::size_t{40}, bytes.size() - 1}) {
+  for (const std::size_t length :
+       {std::size_t{9}, std::size_t{20}, std::size_t{40}, bytes.size() - 1}) {
     EXPECT_NE(error_of(bytes.substr(0, length)).find("truncated"), std::string::npos);
   }
   EXPECT_NE(error_of(bytes + "x").find("damaged"), std::string::npos);
