@@ -5,6 +5,8 @@
 
 namespace planecast::app {
 
+inline constexpr const char* kVersion = "0.1.0";
+
 /// What the parsed command line asks for; returns the exit status.
 using Action = std::function<int()>;
 
@@ -15,6 +17,7 @@ void add_render(CLI::App& app, Action& action);
 void add_synth(CLI::App& app, Action& action);
 void add_segment(CLI::App& app, Action& action);
 void add_evaluate(CLI::App& app, Action& action);
+void add_benchmark(CLI::App& app, Action& action);
 void add_model(CLI::App& app, Action& action);
 
 }  // namespace planecast::app

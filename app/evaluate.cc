@@ -3,16 +3,15 @@
 #include <set>
 
 #include "app/commands.h"
+#include "app/options.h"
 #include "engine/evaluate/overlay.h"
 #include "engine/evaluate/planes.h"
 #include "engine/evaluate/trajectory.h"
-#include "engine/evaluate/visibility.h"
+#include "engine/evaluate/truth.h"
 #include "engine/output/atomic_file.h"
-#include "engine/output/planes_json.h"
 #include "engine/pipeline/reconstruction_io.h"
 #include "engine/sequence/groundtruth.h"
 #include "engine/user_error.h"
-#include "app/options.h"
 
 namespace planecast::app {
 namespace {
@@ -60,43 +59,33 @@ int EvaluateCommand::print(const std::optional<Result>& result) const {
 }
 
 int EvaluateCommand::trajectory() const {
-  return print(engine::evaluate_trajectory(engine::read_trajectory(estimate),
-                                           engine::read_trajectory(groundtruth), alignment(false)));
+  return print(engine::evaluate_trajectory(
+      engine::read_trajectory(estimate), engine::read_groundtruth(groundtruth), alignment(false)));
 }
 
-/// A sequence with exact poses and planes.
-struct Truth {
-  std::unique_ptr<engine::Sequence> sequence;
-  std::vector<engine::TimedPose> poses;
-  std::vector<engine::PlaneRecord> planes;
-};
-
-Truth read_truth(const std::string& folder) {
-  Truth truth;
-  truth.sequence = engine::open_sequence(folder, {});
-  truth.poses = engine::read_trajectory(fs::path(folder) / "groundtruth.txt");
-  truth.planes = engine::read_planes_json(fs::path(folder) / "planes.json").planes;
+/// Of a sequence with exact poses and planes.
+engine::SequenceTruth read_truth(const std::string& folder) {
+  engine::SequenceTruth truth = engine::read_sequence_truth(folder, {});
+  if (truth.planes.empty()) throw engine::UserError(folder + ": has no planes.json");
   return truth;
 }
 
 int EvaluateCommand::planes() const {
   const engine::Reconstruction map = engine::read_reconstruction(reconstruction);
-  const Truth truth = read_truth(groundtruth);
+  const engine::SequenceTruth truth = read_truth(groundtruth);
   engine::PlaneEvaluationOptions options;
   options.trajectory = alignment(map.metric);
-  if (truth.sequence->has_labels()) options.seen_labels = engine::labels_in_view(*truth.sequence);
-  return print(
-      engine::evaluate_planes(map, truth.planes, truth.poses, truth.sequence->camera(), options));
+  options.seen_labels = truth.seen_labels;
+  return print(engine::evaluate_planes(map, truth.planes, truth.poses, truth.camera, options));
 }
 
 int EvaluateCommand::overlay() const {
   const engine::Reconstruction map = engine::read_reconstruction(reconstruction);
-  const Truth truth = read_truth(groundtruth);
+  const engine::SequenceTruth truth = read_truth(groundtruth);
   engine::OverlayOptions options;
   options.planes.trajectory = alignment(map.metric);
   options.causal = causal;
-  return print(
-      engine::evaluate_overlay(map, truth.planes, truth.poses, truth.sequence->camera(), options));
+  return print(engine::evaluate_overlay(map, truth.planes, truth.poses, truth.camera, options));
 }
 
 void add_shared_options(CLI::App& command, EvaluateCommand& options) {
@@ -117,7 +106,9 @@ void add_evaluate(CLI::App& app, Action& action) {
   CLI::App* trajectory =
       command->add_subcommand("trajectory", "Absolute and relative trajectory error");
   trajectory->add_option("--estimate", options->estimate, "Trajectory, TUM format")->required();
-  trajectory->add_option("--groundtruth", options->groundtruth, "Trajectory, TUM format")
+  trajectory
+      ->add_option("--groundtruth", options->groundtruth,
+                   "True poses: a file of TUM, ICL-NUIM or EuRoC, or the sequence's folder")
       ->required();
   add_shared_options(*trajectory, *options);
   trajectory->callback(

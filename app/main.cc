@@ -6,8 +6,8 @@
 
 #include "app/commands.h"
 #include "app/console.h"
-#include "engine/user_error.h"
 #include "app/options.h"
+#include "engine/user_error.h"
 
 namespace {
 
@@ -23,9 +23,8 @@ std::string one_line(std::string text) {
 /// CLI11 would only say that a command is missing.
 std::string describe(const CLI::ParseError& error, const CLI::App& cli, int argc, char** argv) {
   const std::string first = argc > 1 ? argv[1] : "";
-  const auto commands = cli.get_subcommands([&](const CLI::App* command) {
-    return command->get_name() == first;
-  });
+  const auto commands =
+      cli.get_subcommands([&](const CLI::App* command) { return command->get_name() == first; });
   if (!first.empty() && first[0] != '-' && commands.empty()) {
     return "unknown command '" + first + "'";
   }
@@ -50,7 +49,7 @@ int main(int argc, char** argv) {
   app::silence_libraries();
   CLI::App cli("Puts glTF objects on the planes of a recorded image sequence.", "planecast");
   cli.require_subcommand(1);
-  cli.set_version_flag("--version", "planecast 0.1.0");
+  cli.set_version_flag("--version", std::string("planecast ") + app::kVersion);
   app::Action action;
   app::add_run(cli, action);
   app::add_track(cli, action);
@@ -58,6 +57,7 @@ int main(int argc, char** argv) {
   app::add_synth(cli, action);
   app::add_segment(cli, action);
   app::add_evaluate(cli, action);
+  app::add_benchmark(cli, action);
   app::add_model(cli, action);
   try {
     cli.parse(argc, argv);

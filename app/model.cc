@@ -4,10 +4,10 @@
 #include <memory>
 
 #include "app/commands.h"
+#include "app/options.h"
 #include "engine/output/png.h"
 #include "engine/pipeline/turntable.h"
 #include "engine/user_error.h"
-#include "app/options.h"
 #include "render/gltf/import.h"
 
 namespace planecast::app {
@@ -19,16 +19,26 @@ struct ModelCommand {
   std::string file;
   std::string output;
   std::string animation;
+  render::ImportOptions import;
+  bool list = false;
+  bool keep_triangles = false;
 
   int run() const {
     const Console console = common.console();
-    const render::ImportResult model = render::import_gltf(file);
+    const render::ImportResult model = render::import_gltf(file, import);
     if (!model.model) throw engine::UserError(file + ": " + model.error);
     for (const std::string& warning : model.warnings) console.warning(file + ": " + warning);
     describe(*model.model, console);
+    if (list) {
+      for (const std::string& line : render::describe_model(*model.model)) console.result(line);
+    }
     if (output.empty()) return kDone;
     engine::TurntableOptions options = turntable;
     options.animation = find_animation(*model.model);
+    options.simplify = !keep_triangles;
+    if (options.camera >= 0 && !engine::has_camera(*model.model, options.camera)) {
+      throw engine::UserError(file + ": no camera " + std::to_string(options.camera));
+    }
     engine::write_png(engine::draw_turntable(model.model, options), output);
     console.result(output);
     return kDone;
@@ -77,6 +87,19 @@ void add_model(CLI::App& app, Action& action) {
   command->add_option("--animation", options->animation, "Name of an animation to pose it by");
   command->add_option("--time", options->turntable.time_s, "Seconds into the animation")
       ->capture_default_str();
+  command->add_flag("--list", options->list, "Say what the file contains");
+  command
+      ->add_option("--scene", options->import.scene, "Scene by number instead of the default one")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--variant", options->import.variant, "Material variant by name");
+  command->add_option("--camera", options->turntable.camera, "See through the model's own camera")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--elevation", options->turntable.elevation_deg, "Degrees over the horizon")
+      ->check(CLI::Range(-89.0, 89.0))
+      ->capture_default_str();
+  command->add_option("--azimuth", options->turntable.azimuth_deg, "Degrees of the first view")
+      ->capture_default_str();
+  command->add_flag("--keep-triangles", options->keep_triangles, "Never simplify meshes");
   add_common_options(*command, options->common);
   command->callback([options, &action] { action = [options] { return options->run(); }; });
 }

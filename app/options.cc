@@ -2,39 +2,11 @@
 
 #include <cstdio>
 
+#include "engine/sequence/frame_options.h"
 #include "engine/user_error.h"
 
 namespace planecast::app {
 namespace {
-
-/// "A:B" with either side left out; throws UserError.
-void parse_frames(const std::string& text, engine::SequenceOptions& options) {
-  int first = 0;
-  int end = -1;
-  char rest = 0;
-  const bool both = std::sscanf(text.c_str(), "%d:%d%c", &first, &end, &rest) == 2;
-  const bool from =
-      !both && std::sscanf(text.c_str(), "%d:%c", &first, &rest) == 1 && text.back() == ':';
-  const bool to = !both && !from && std::sscanf(text.c_str(), ":%d%c", &end, &rest) == 1;
-  if (to) first = 0;
-  if ((!both && !from && !to) || first < 0 || (!from && end <= first)) {
-    throw engine::UserError("--frames " + text + ": expected A:B with 0 <= A < B");
-  }
-  options.first_frame = first;
-  options.end_frame = from ? -1 : end;
-}
-
-cv::Size parse_size(const std::string& text) {
-  constexpr int kMost = 16384;
-  int width = 0;
-  int height = 0;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 16 ||
-      height < 16 || width > kMost || height > kMost) {
-    throw engine::UserError("--size " + text + ": expected WxH in pixels, as 640x480");
-  }
-  return {width, height};
-}
 
 Eigen::Vector3d parse_direction(const std::string& text) {
   Eigen::Vector3d v = Eigen::Vector3d::Zero();
@@ -79,8 +51,8 @@ void add_input_options(CLI::App& command, InputOptions& options) {
 std::unique_ptr<engine::Sequence> InputOptions::open() const {
   engine::SequenceOptions result;
   result.camera = camera;
-  if (!frames.empty()) parse_frames(frames, result);
-  if (!size.empty()) result.size = parse_size(size);
+  if (!frames.empty()) engine::parse_frames(frames, result);
+  if (!size.empty()) result.size = engine::parse_size(size);
   return engine::open_sequence(sequence, result);
 }
 
@@ -101,6 +73,14 @@ void add_tracking_options(CLI::App& command, TrackingOptions& options) {
   command.add_option("--plane-merge", options.plane_merge, "default or paper")
       ->check(CLI::IsMember({"default", "paper"}))
       ->capture_default_str();
+  command
+      .add_option("--plane-fit", options.plane_fit,
+                  "graph-cut, or plain: sequential RANSAC without spatial coherence")
+      ->check(CLI::IsMember({"graph-cut", "plain"}))
+      ->capture_default_str();
+  command.add_flag("--no-planes", options.no_planes, "Map points alone");
+  command.add_flag("--no-joint-refinement", options.no_joint_refinement,
+                   "No final refinement of points and planes together");
 }
 
 engine::TrackSequenceOptions TrackingOptions::resolve(const CommonOptions& common,
@@ -114,6 +94,9 @@ engine::TrackSequenceOptions TrackingOptions::resolve(const CommonOptions& commo
   result.seed = common.seed;
   result.skip_unreadable = input.skip_unreadable;
   result.plane_merge = plane_merge;
+  result.plane_fit = plane_fit;
+  result.map_planes = !no_planes;
+  result.refine_jointly = !no_joint_refinement;
   if (!up.empty()) result.up = parse_direction(up);
   return result;
 }

@@ -42,8 +42,11 @@ struct TrackingOptions {
   std::string segmentation = "auto";
   std::string up;  ///< x,y,z
   std::string plane_merge = "default";
+  std::string plane_fit = "graph-cut";
   bool causal = false;
   bool no_loop_closing = false;
+  bool no_planes = false;
+  bool no_joint_refinement = false;
 
   engine::TrackSequenceOptions resolve(const CommonOptions& common,
                                        const InputOptions& input) const;

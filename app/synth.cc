@@ -55,6 +55,9 @@ void add_synth(CLI::App& app, Action& action) {
   command->add_option("--fps", options->synth.fps, "Frames per second")
       ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
+  command->add_option("--lens", options->synth.lens, "Lens of the camera: none or wide")
+      ->check(CLI::IsMember(engine::synthetic_lens_names()))
+      ->capture_default_str();
   command->add_flag("--no-effects", options->no_effects,
                     "No noise, blur, exposure drift or depth holes");
   add_common_options(*command, options->common);

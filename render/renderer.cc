@@ -84,22 +84,24 @@ struct Renderer::Impl {
     gl.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   }
 
-  /// Targets of the camera's size; kept while it stays the same.
-  void resize(const Camera& camera) {
-    check_camera(camera);
-    if (color && color->width() == camera.width && color->height() == camera.height) return;
-    color.emplace(gl, camera.width, camera.height, options.msaa_samples > 1 ? 4 : 1);
-    geometry.emplace(gl, camera.width, camera.height);
-    occluder_depth = TextureHandle();
+  /// Targets for the window; kept while they fit. What they hold does not depend on their size.
+  void prepare_targets(const Window& window) {
+    if (color && fits(color->width(), color->height(), window.rect)) return;
+    const int width = whole_tiles(window.rect.width);
+    const int height = whole_tiles(window.rect.height);
+    color.reset();
+    geometry.reset();
+    color.emplace(gl, width, height, options.msaa_samples > 1 ? 4 : 1);
+    geometry.emplace(gl, width, height);
   }
 
   Layer draw_layer(const LayerScene& scene, const Camera& camera);
   void draw_layer_color(const LayerScene& scene, const Camera& camera, const CatcherInput& catching,
-                        const ShadingInput& shading, Layer& layer);
+                        const ShadingInput& shading, const Window& window, Layer& layer);
   OpaqueImages draw_opaque(const OpaqueScene& scene, const Camera& camera);
   void draw_shadow_map(const ShadowProjection& projection, const std::vector<DrawItem>& items,
                        const Sun& sun, bool with_surfaces, std::uint64_t signature);
-  GLuint upload_occluder_depth(const LayerScene& scene, const Camera& camera);
+  GLuint upload_occluder_depth(const LayerScene& scene, const Window& window);
   void begin_opaque_state() const;
   void check_errors() const;
 
@@ -117,6 +119,7 @@ struct Renderer::Impl {
   std::optional<ColorTarget> color;
   std::optional<GeometryTarget> geometry;
   TextureHandle occluder_depth;
+  Layer::Rect occluder_depth_rect;
 };
 
 void Renderer::Impl::begin_opaque_state() const {
@@ -145,22 +148,37 @@ void Renderer::Impl::draw_shadow_map(const ShadowProjection& projection,
   if (with_surfaces) {
     surfaces.draw_shadow(shaders, projection, glm::normalize(sun.direction_to_light));
   }
-  model_passes.draw_depth(items, projection.clip_from_world);
+  model_passes.draw_depth(items, projection.clip_from_world,
+                          options.simplify_px * projection.texel_m);
   gl.Disable(GL_POLYGON_OFFSET_FILL);
 }
 
-GLuint Renderer::Impl::upload_occluder_depth(const LayerScene& scene, const Camera& camera) {
+/// The window's part of the depth image, so that the shaders find it by their own pixel.
+GLuint Renderer::Impl::upload_occluder_depth(const LayerScene& scene, const Window& window) {
   const ImageF* depth = scene.occluder_depth;
-  if (depth == nullptr || depth->width != camera.width || depth->height != camera.height) return 0;
-  if (!occluder_depth) occluder_depth = make_target(gl, GL_R32F, camera.width, camera.height);
+  if (depth == nullptr || depth->width != window.picture_width ||
+      depth->height != window.picture_height) {
+    return 0;
+  }
+  const Layer::Rect& rect = window.rect;
+  if (!occluder_depth || occluder_depth_rect.width != rect.width ||
+      occluder_depth_rect.height != rect.height) {
+    occluder_depth = make_target(gl, GL_R32F, rect.width, rect.height);
+    occluder_depth_rect = rect;
+  }
   gl.PixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  gl.TextureSubImage2D(occluder_depth.id(), 0, 0, 0, camera.width, camera.height, GL_RED, GL_FLOAT,
-                       depth->pixels.data());
+  gl.PixelStorei(GL_UNPACK_ROW_LENGTH, depth->width);
+  const std::size_t first =
+      static_cast<std::size_t>(rect.y) * static_cast<std::size_t>(depth->width) +
+      static_cast<std::size_t>(rect.x);
+  gl.TextureSubImage2D(occluder_depth.id(), 0, 0, 0, rect.width, rect.height, GL_RED, GL_FLOAT,
+                       depth->pixels.data() + first);
+  gl.PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
   return occluder_depth.id();
 }
 
 Layer Renderer::Impl::draw_layer(const LayerScene& scene, const Camera& camera) {
-  resize(camera);
+  check_camera(camera);
   Layer layer;
   layer.rgba = ImageU8(camera.width, camera.height, 4);
   layer.depth = ImageF(camera.width, camera.height, 1);
@@ -177,7 +195,8 @@ Layer Renderer::Impl::draw_layer(const LayerScene& scene, const Camera& camera) 
         items, sun, false, signature);
     shadow = &shadow_map;
   }
-  const CatcherInput catching{&scene, &camera, &items, &points, shadow, signature};
+  const CatcherInput catching{
+      &scene, &camera, &items, &points, shadow, signature, options.simplify_px};
   catchers.prepare(shaders, catching);
 
   Layer::Rect bounds;
@@ -193,39 +212,42 @@ Layer Renderer::Impl::draw_layer(const LayerScene& scene, const Camera& camera) 
   layer.bounds = grown(bounds, kBoundsMargin, camera);
   if (layer.bounds.width == 0) return layer;
 
+  const Window window{camera.width, camera.height, layer.bounds};
+  prepare_targets(window);
   ShadingInput shading;
   shading.camera = &camera;
   shading.light = &scene.light;
   shading.shadow = shadow;
-  shading.occluder_depth = upload_occluder_depth(scene, camera);
+  shading.occluder_depth = upload_occluder_depth(scene, window);
   shading.multisampled = options.msaa_samples > 1;
-  draw_layer_color(scene, camera, catching, shading, layer);
+  shading.detail_px = options.simplify_px;
+  draw_layer_color(scene, camera, catching, shading, window, layer);
 
-  geometry->begin(layer.bounds);
+  geometry->begin(window);
   begin_opaque_state();
   occluders.draw(shaders, scene.occluders, camera);
   begin_opaque_state();
   model_passes.draw_geometry(items, shading);
-  geometry->read_depth(layer.bounds, layer.depth);
+  geometry->read_depth(window, layer.depth);
   check_errors();
   return layer;
 }
 
 void Renderer::Impl::draw_layer_color(const LayerScene& scene, const Camera& camera,
                                       const CatcherInput& catching, const ShadingInput& shading,
-                                      Layer& layer) {
-  color->begin(layer.bounds);
+                                      const Window& window, Layer& layer) {
+  color->begin(window);
   begin_opaque_state();
   occluders.draw(shaders, scene.occluders, camera);
   catchers.draw(shaders, catching, shading.occluder_depth,
                 kCatcherTolerance * shading.occluder_tolerance);
   begin_opaque_state();
   model_passes.draw_color(*catching.items, shading);
-  color->resolve(layer.bounds, layer.rgba);
+  color->resolve(window, layer.rgba);
 }
 
 OpaqueImages Renderer::Impl::draw_opaque(const OpaqueScene& scene, const Camera& camera) {
-  resize(camera);
+  check_camera(camera);
   surfaces.update(scene.surfaces);
   const std::vector<DrawItem>& items = models.pose(scene.instances);
   const Sun& sun = scene.light.sun;
@@ -248,8 +270,10 @@ OpaqueImages Renderer::Impl::draw_opaque(const OpaqueScene& scene, const Camera&
   shading.shadow = shadow;
   shading.exposure = scene.exposure;
   shading.multisampled = options.msaa_samples > 1;
+  shading.detail_px = options.simplify_px;
 
-  const Layer::Rect whole{0, 0, camera.width, camera.height};
+  const Window whole{camera.width, camera.height, {0, 0, camera.width, camera.height}};
+  prepare_targets(whole);
   color->begin(whole);
   begin_opaque_state();
   surfaces.draw_color(shaders, scene, camera, shadow);

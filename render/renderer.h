@@ -14,6 +14,9 @@ struct RendererOptions {
   std::string shader_dir;      ///< assets/shaders
   int msaa_samples = 4;        ///< 4 or 1
   int shadow_map_size = 1024;  ///< rounded down to a power of two
+  /// Meshes are drawn with fewer triangles where the difference stays below this many pixels on the
+  /// screen, or texels of a shadow; 0 draws them as they are.
+  float simplify_px = 0.5F;
   /// Keeps Mesa from using instructions (fused multiply-add) that round differently on processors
   /// that lack them: the same bytes on any x86-64, at 1.25 to 1.6 times the time. Holds for the
   /// whole process from its first context on; for golden tests.

@@ -6,6 +6,7 @@ packages=(
   build-essential python3 cmake ninja-build pkg-config ccache git ca-certificates
   libopencv-dev libopencv-contrib-dev libeigen3-dev libceres-dev libflann-dev liblz4-dev
   libglm-dev libosmesa6-dev libgl-dev libegl-dev libtinygltf-dev
+  libdraco-dev libmeshoptimizer-dev libwebp-dev libstb-dev
   libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libyaml-cpp-dev
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev ffmpeg
   libgtest-dev libgmock-dev

@@ -22,6 +22,15 @@ PrepareOptions prepare_options(const SystemOptions& options) {
 SystemOptions with_common_values(SystemOptions options) {
   const ScaleLevels levels = options.orb.levels;
   options.initialise.levels = levels;
+  options.initialise.tracks.scale_levels = levels;
+  options.initialise.features = options.initial_features;
+  options.initialise.by_patches = options.track.front_end == FrontEnd::kPatches;
+  if (options.initialise.by_patches) {
+    // Followed corners are good to a fifth of a pixel, so that half the parallax tells depth as well
+    // as twice as much does with whole-pixel features.
+    options.initialise.two_view.sigma_px = 0.5;
+    options.initialise.two_view.min_parallax_deg = 0.5;
+  }
   options.initialise.seed = options.seed;
   options.track.localise.levels = levels;
   options.track.relocalise.localise.levels = levels;
@@ -42,6 +51,8 @@ SystemOptions with_common_values(SystemOptions options) {
   options.track.patches.levels = levels;
   options.mapping.describe.patches.levels = levels;
   options.mapping.describe.localise = options.track.localise;
+  options.mapping.search.points = options.mapping.points;
+  options.mapping.search_by_patches = options.track.front_end == FrontEnd::kPatches;
   return options;
 }
 
@@ -62,7 +73,7 @@ System::System(const SystemOptions& options, const Camera& camera,
       camera_(camera),
       preparer_(std::make_unique<ImagePreparer>(options_.mapping.prepare, camera)),
       tracker_preparer_(std::make_unique<ImagePreparer>(options_.mapping.prepare, camera)),
-      initialiser_(options_.initialise, camera),
+      initialiser_(options_.initialise, options_.mapping.prepare, camera),
       tracker_(options_.track, camera, options_.rgbd),
       mapper_(options_.mapping, camera, std::move(segmenter)) {
   if (options_.close_loops && options_.vocabulary != nullptr) {
@@ -104,7 +115,7 @@ void System::restart() {
   lost_frames_ = 0;
 }
 
-void System::start(const ImageFeatures& image, FrameTrack& result) {
+void System::start(ImageFeatures& image, FrameTrack& result) {
   Stopwatch watch;
   const std::optional<ImageFeatures> reference = initialiser_.reference();
   const InitialiseResult started =
@@ -257,7 +268,7 @@ FrameTrack System::track(ImageFeatures image) {
   }
   if (!initialised()) {
     // After a restart the images on the way have none yet.
-    if (image.features == nullptr) tracker_preparer_->extract(image, options_.initial_features);
+    if (options_.rgbd && image.features == nullptr) tracker_preparer_->extract(image);
     start(image, result);
     return result;
   }

@@ -125,7 +125,7 @@ class System {
     std::shared_future<std::optional<LoopCorrection>> correction;
   };
 
-  void start(const ImageFeatures& image, FrameTrack& result);
+  void start(ImageFeatures& image, FrameTrack& result);
   TrackResult track_in_map(ImageFeatures& image);
   std::optional<PoseEstimate> localise_by_patches(const ImageFeatures& image,
                                                   const Pose& prior_cam_from_world) const;

@@ -9,10 +9,10 @@ float ggx_times_pi(float alpha, float n_dot_l, float n_dot_v, float n_dot_h) {
   return 0.5 * a2 / (d * d * max(v, 1e-5));
 }
 
-vec3 fresnel(vec3 f0, float v_dot_h) {
+vec3 fresnel(vec3 f0, float f90, float v_dot_h) {
   float base = 1.0 - v_dot_h;
   float base2 = base * base;
-  return f0 + (1.0 - f0) * base2 * base2 * base;
+  return f0 + (f90 - f0) * base2 * base2 * base;
 }
 
 // Scale and bias of f0 for light from everywhere (Karis, "Physically Based Shading on Mobile", 2014,

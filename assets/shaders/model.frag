@@ -1,47 +1,33 @@
-// glTF 2.0 metallic-roughness shading. Output: encoded to sRGB, then premultiplied.
+// glTF 2.0 metallic-roughness shading with its layers. Output: encoded to sRGB, then premultiplied.
 in vec3 v_world;
 in vec3 v_normal;
 in vec4 v_tangent;
 in vec4 v_uv;
 in vec4 v_color;
 
-uniform vec4 u_base_color_factor;
 uniform float u_alpha_cutoff;
 uniform float u_exposure;
-uniform float u_metallic;
-uniform float u_roughness;
-uniform vec3 u_emissive;
-uniform float u_normal_scale;
-uniform float u_occlusion_strength;
 uniform vec3 u_eye;
 uniform vec3 u_to_light;
 uniform vec3 u_sun_radiance;
 
-uniform sampler2D u_base_color;
-uniform int u_base_color_set;
-uniform mat3 u_base_color_transform;
-uniform sampler2D u_metallic_roughness;
-uniform int u_metallic_roughness_set;
-uniform mat3 u_metallic_roughness_transform;
-uniform sampler2D u_normal;
-uniform int u_normal_set;
-uniform mat3 u_normal_transform;
-uniform sampler2D u_occlusion;
-uniform int u_occlusion_set;
-uniform mat3 u_occlusion_transform;
-uniform sampler2D u_emissive_map;
-uniform int u_emissive_map_set;
-uniform mat3 u_emissive_map_transform;
-
 #include "color.glsl"
 #include "stretched.glsl"
 #include "texture_slot.glsl"
+#include "model_maps.glsl"
 #ifdef OCCLUDER_DEPTH
 #include "occluder_depth.glsl"
 #endif
 #ifndef UNLIT
+#include "model_layers.glsl"
 #include "ambient.glsl"
 #include "brdf.glsl"
+#ifdef SHEEN
+#include "sheen.glsl"
+#endif
+#ifdef LAMPS
+#include "lamps.glsl"
+#endif
 #endif
 #ifdef SHADOWS
 #include "shadow.glsl"
@@ -49,80 +35,138 @@ uniform mat3 u_emissive_map_transform;
 
 out vec4 o_color;
 
-vec4 base_color() {
-  vec4 color = u_base_color_factor * v_color;
-#ifdef BASE_COLOR_MAP
-  color *= sample_stretched(u_base_color, slot_uv(v_uv, u_base_color_set, u_base_color_transform));
+#ifndef UNLIT
+// The reflected lobe is as blurred as GGX is wide: band l fades with alpha, so that a mirror sees the
+// harmonics themselves and roughness 1 about the cosine lobe.
+vec3 reflected_ambient(vec3 n, vec3 v, float alpha) {
+  return evaluate_sh(reflect(-v, n), vec3(1.0, exp(-0.45 * alpha), exp(-1.4 * alpha)));
+}
+
+struct Surface {
+  vec3 n;
+  vec3 v;
+  vec3 diffuse;
+  vec3 f0;
+  float f90;
+  float alpha;
+  float n_dot_v;
+#ifdef CLEARCOAT
+  vec3 coat_n;
+  vec2 coat;  // strength and roughness
+#endif
+#ifdef SHEEN
+  vec4 sheen;  // colour and roughness
+#endif
+};
+
+// The layers from top to bottom: coat, sheen, base; each leaves to the next what it does not reflect.
+vec3 layered(Surface s, vec3 base, vec3 sheen_light, float sheen_share, vec3 coat_light, float coat_v) {
+  vec3 color = base;
+#ifdef SHEEN
+  color = sheen_light + color * (1.0 - max(max(s.sheen.r, s.sheen.g), s.sheen.b) * sheen_share);
+#endif
+#ifdef CLEARCOAT
+  float reflected = s.coat.x * fresnel(vec3(0.04), 1.0, coat_v).r;
+  color = color * (1.0 - reflected) + coat_light;
 #endif
   return color;
 }
 
-#ifndef UNLIT
-vec3 shading_normal(vec3 geometric) {
-#ifdef NORMAL_MAP
-  vec3 tangent = v_tangent.xyz - geometric * dot(geometric, v_tangent.xyz);
-  float length2 = dot(tangent, tangent);
-  if (length2 < 1e-12) return geometric;
-  tangent *= inversesqrt(length2) * (gl_FrontFacing ? 1.0 : -1.0);
-  vec3 bitangent = cross(geometric, tangent) * v_tangent.w;
-  vec3 local = texture(u_normal, slot_uv(v_uv, u_normal_set, u_normal_transform)).xyz * 2.0 - 1.0;
-  local.xy *= u_normal_scale;
-  return normalize(mat3(tangent, bitangent, geometric) * local);
-#else
-  return geometric;
+vec3 ambient_light(Surface s) {
+  vec2 ab = split_sum(sqrt(s.alpha), s.n_dot_v);
+  vec3 single = s.f0 * ab.x + s.f90 * ab.y;
+  // What single scattering loses comes back after more bounces (Fdez-Aguera 2019, simplified).
+  vec3 specular = single * (1.0 + s.f0 * (1.0 / max(ab.x + ab.y, 1e-3) - 1.0));
+  vec3 base = s.diffuse * (1.0 - specular) * diffuse_ambient(s.n) +
+              specular * reflected_ambient(s.n, s.v, s.alpha);
+  vec3 sheen_light = vec3(0.0);
+  float sheen_share = 0.0;
+  vec3 coat_light = vec3(0.0);
+  float coat_v = 1.0;
+#ifdef SHEEN
+  sheen_share = sheen_albedo(s.sheen.a, s.n_dot_v);
+  sheen_light = s.sheen.rgb * sheen_share * diffuse_ambient(s.n);
 #endif
+#ifdef CLEARCOAT
+  coat_v = max(dot(s.coat_n, s.v), 1e-3);
+  vec2 coat_ab = split_sum(s.coat.y, coat_v);
+  coat_light = s.coat.x * (0.04 * coat_ab.x + coat_ab.y) *
+               reflected_ambient(s.coat_n, s.v, s.coat.y * s.coat.y);
+#endif
+  return layered(s, base, sheen_light, sheen_share, coat_light, coat_v);
 }
 
-vec3 shade(vec3 albedo) {
+// Light from direction `l` with the given irradiance / pi on a facing surface.
+vec3 direct_light(Surface s, vec3 l, vec3 light) {
+  float n_dot_l = dot(s.n, l);
+  vec3 h = normalize(l + s.v);
+  vec3 coat_light = vec3(0.0);
+  float v_dot_h = max(dot(s.v, h), 0.0);
+#ifdef CLEARCOAT
+  float coat_l = max(dot(s.coat_n, l), 0.0);
+  float coat_v = max(dot(s.coat_n, s.v), 1e-3);
+  coat_light = s.coat.x * fresnel(vec3(0.04), 1.0, v_dot_h) * coat_l * light *
+               ggx_times_pi(s.coat.y * s.coat.y, coat_l, coat_v, max(dot(s.coat_n, h), 0.0));
+#endif
+  if (n_dot_l <= 0.0) return coat_light;
+  float n_dot_h = max(dot(s.n, h), 0.0);
+  vec3 f = fresnel(s.f0, s.f90, v_dot_h);
+  vec3 reflected = f * ggx_times_pi(s.alpha, n_dot_l, s.n_dot_v, n_dot_h);
+  vec3 base = (s.diffuse * (1.0 - f) + reflected) * light * n_dot_l;
+  vec3 sheen_light = vec3(0.0);
+  float sheen_share = 0.0;
+#ifdef SHEEN
+  sheen_light = s.sheen.rgb * light * n_dot_l *
+                sheen_times_pi(s.sheen.a, n_dot_l, s.n_dot_v, n_dot_h);
+  sheen_share = max(sheen_albedo(s.sheen.a, s.n_dot_v), sheen_albedo(s.sheen.a, n_dot_l));
+#endif
+  return layered(s, base, sheen_light, sheen_share, coat_light, v_dot_h);
+}
+
+vec3 shade(vec3 albedo, float metallic, float roughness, float kept) {
   vec3 geometric = normalize(v_normal) * (gl_FrontFacing ? 1.0 : -1.0);
-  vec3 n = shading_normal(geometric);
-  vec3 v = normalize(u_eye - v_world);
-  float metallic = u_metallic;
-  float roughness = u_roughness;
-#ifdef METALLIC_ROUGHNESS_MAP
-  vec4 mr = texture(u_metallic_roughness,
-                    slot_uv(v_uv, u_metallic_roughness_set, u_metallic_roughness_transform));
-  metallic *= mr.b;
-  roughness *= mr.g;
-#endif
+  vec4 dielectric = dielectric_reflectance();
+  Surface s;
+  s.n = shading_normal(geometric);
+  s.v = normalize(u_eye - v_world);
+  s.f0 = mix(dielectric.rgb, albedo, metallic);
+  s.f90 = mix(dielectric.a, 1.0, metallic);
+  s.diffuse = albedo * (1.0 - metallic) * kept;
   roughness = clamp(roughness, 0.045, 1.0);
-  float alpha = roughness * roughness;
-  vec3 f0 = mix(vec3(0.04), albedo, metallic);
-  vec3 diffuse = albedo * (1.0 - metallic);
-  float n_dot_v = max(dot(n, v), 1e-3);
-
-  // Surroundings. The reflected lobe is as blurred as GGX is wide: band l fades with alpha, so that a
-  // mirror sees the harmonics themselves and roughness 1 about the cosine lobe.
-  vec2 ab = split_sum(roughness, n_dot_v);
-  vec3 single = f0 * ab.x + ab.y;
-  // What single scattering loses comes back after more bounces (Fdez-Aguera 2019, simplified).
-  vec3 specular = single * (1.0 + f0 * (1.0 / max(ab.x + ab.y, 1e-3) - 1.0));
-  vec3 lobe = vec3(1.0, exp(-0.45 * alpha), exp(-1.4 * alpha));
-  vec3 ambient = diffuse * (1.0 - specular) * diffuse_ambient(n) +
-                 specular * evaluate_sh(reflect(-v, n), lobe);
-#ifdef OCCLUSION_MAP
-  float open = texture(u_occlusion, slot_uv(v_uv, u_occlusion_set, u_occlusion_transform)).r;
-  ambient *= 1.0 + u_occlusion_strength * (open - 1.0);
+  s.alpha = roughness * roughness;
+  s.n_dot_v = max(dot(s.n, s.v), 1e-3);
+#ifdef CLEARCOAT
+  s.coat_n = clearcoat_normal(geometric);
+  s.coat = clearcoat();
 #endif
-  vec3 color = ambient;
+#ifdef SHEEN
+  s.sheen = sheen();
+#endif
 
+  vec3 color = ambient_light(s) * ambient_openness();
 #ifdef SUN
-  float n_dot_l = dot(n, u_to_light);
-  if (n_dot_l > 0.0) {
-    vec3 h = normalize(u_to_light + v);
-    vec3 f = fresnel(f0, max(dot(v, h), 0.0));
-    vec3 reflected = f * ggx_times_pi(alpha, n_dot_l, n_dot_v, max(dot(n, h), 0.0));
-    float arrives = n_dot_l;
-#ifdef SHADOWS
-    arrives *= sun_visibility(v_world, geometric, max(dot(geometric, u_to_light), 0.0));
+  float facing = dot(s.n, u_to_light);
+#ifdef CLEARCOAT
+  facing = max(facing, dot(s.coat_n, u_to_light));
 #endif
-    color += (diffuse * (1.0 - f) + reflected) * u_sun_radiance * arrives;
+  if (facing > 0.0) {
+    float arrives = 1.0;
+#ifdef SHADOWS
+    arrives = sun_visibility(v_world, geometric, max(dot(geometric, u_to_light), 0.0));
+#endif
+    color += direct_light(s, u_to_light, u_sun_radiance * arrives);
   }
 #endif
-
-  vec3 emissive = u_emissive;
-#ifdef EMISSIVE_MAP
-  emissive *= texture(u_emissive_map, slot_uv(v_uv, u_emissive_map_set, u_emissive_map_transform)).rgb;
+#ifdef LAMPS
+  for (int i = 0; i < u_lamp_count; ++i) {
+    vec3 to_lamp;
+    vec3 light = lamp_light(i, v_world, to_lamp);
+    color += direct_light(s, to_lamp, light);
+  }
+#endif
+  vec3 emissive = emitted();
+#ifdef CLEARCOAT
+  emissive *= 1.0 - s.coat.x * fresnel(vec3(0.04), 1.0, max(dot(s.coat_n, s.v), 0.0)).r;
 #endif
   return color + emissive;
 }
@@ -149,10 +193,21 @@ void main() {
   alpha *= depth_visibility();
   if (alpha <= 0.0) discard;
 #endif
+  float covers = 1.0;
 #ifdef UNLIT
-  vec3 color = base.rgb;
+  vec3 color = srgb_encode(base.rgb * u_exposure);
 #else
-  vec3 color = shade(base.rgb);
+  vec2 mr = metallic_roughness();
+  float kept = 1.0;
+#ifdef TRANSMISSION
+  kept = 1.0 - transmitted_share() * (1.0 - mr.x);
 #endif
-  o_color = vec4(srgb_encode(color * u_exposure) * alpha, alpha);
+  vec3 color = srgb_encode(shade(base.rgb, mr.x, mr.y, kept) * u_exposure);
+#ifdef TRANSMISSION
+  // What is behind shows through, darkened by the mean of the tint; a reflection covers it.
+  float tint = dot(base.rgb, vec3(1.0 / 3.0));
+  covers = max(1.0 - (1.0 - kept) * tint, max(color.r, max(color.g, color.b)));
+#endif
+#endif
+  o_color = vec4(color * alpha, covers * alpha);
 }

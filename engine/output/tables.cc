@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "engine/output/atomic_file.h"
+#include "engine/output/csv.h"
 #include "engine/output/trajectory.h"
 #include "engine/user_error.h"
 
@@ -17,6 +18,7 @@ namespace {
 
 constexpr std::string_view kFramesHeader = "index,timestamp,state,reason,inliers";
 constexpr const char* kTracking = "Tracking";
+constexpr const char* kExtraction = "Feature Extraction";
 constexpr const char* kSegmentation = "Instance Planar Segmentation";
 constexpr std::array<const char*, 11> kPaperRows = {kTracking,
                                                     "Local Mapping",
@@ -29,19 +31,6 @@ constexpr std::array<const char*, 11> kPaperRows = {kTracking,
                                                     "Plane Re-estimation",
                                                     "Point-Plane Refinement",
                                                     "Local BA"};
-
-/// RFC 4180, with line breaks made spaces: one frame stays one line.
-std::string csv_field(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  std::replace(text.begin(), text.end(), '\r', ' ');
-  if (text.find_first_of(",\"") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + '"';
-}
 
 std::vector<std::string> split_csv(std::string_view line) {
   std::vector<std::string> fields(1);
@@ -100,14 +89,20 @@ std::vector<double> samples_of(const Reconstruction& reconstruction, const std::
   return samples;
 }
 
+/// The tracking thread's work on each frame: finding features and the pose.
 std::vector<double> tracking_samples(const Reconstruction& reconstruction) {
-  std::vector<double> samples = samples_of(reconstruction, kTracking);
-  if (!samples.empty()) return samples;
+  const bool named = !samples_of(reconstruction, kTracking).empty();
+  std::vector<double> samples;
   for (const StageTimes& times : reconstruction.frame_times) {
-    if (times.empty()) continue;
     double sum = 0.0;
-    for (const auto& [stage, ms] : times) sum += stage == kSegmentation ? 0.0 : ms;
-    samples.push_back(sum);
+    bool tracked = !named && !times.empty();
+    for (const auto& [stage, ms] : times) {
+      const bool counts =
+          named ? stage == kTracking || stage == kExtraction : stage != kSegmentation;
+      if (counts) sum += ms;
+      if (stage == kTracking) tracked = true;
+    }
+    if (tracked) samples.push_back(sum);
   }
   return samples;
 }
@@ -164,6 +159,8 @@ void write_times_csv(const Reconstruction& reconstruction, const std::filesystem
   }
   write_file(path, text);
 }
+
+std::vector<std::string> paper_timing_names() { return {kPaperRows.begin(), kPaperRows.end()}; }
 
 std::vector<TimingRow> timing_rows(const Reconstruction& reconstruction) {
   std::vector<TimingRow> rows;

@@ -1,7 +1,7 @@
 #include "engine/pipeline/track_sequence.h"
 
 #include <algorithm>
-#include <cmath>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <future>
@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "engine/assets.h"
-#include "engine/pipeline/map_bin.h"
+#include "engine/pipeline/earlier_map.h"
 #include "engine/pipeline/map_to_records.h"
 #include "engine/scene/plane_classes.h"
 #include "engine/user_error.h"
@@ -67,49 +67,13 @@ slam::SystemOptions system_options(const TrackSequenceOptions& options, bool rgb
   } else if (options.plane_merge != "default") {
     throw UserError("--plane-merge " + options.plane_merge + ": expected default or paper");
   }
+  if (options.plane_fit != "graph-cut" && options.plane_fit != "plain") {
+    throw UserError("--plane-fit " + options.plane_fit + ": expected graph-cut or plain");
+  }
+  result.mapping.planes.graph_cut = options.plane_fit == "graph-cut";
+  result.mapping.map_planes = options.map_planes;
+  result.refine_jointly = options.refine_jointly;
   return result;
-}
-
-/// What an earlier run left behind, for this sequence to go on from.
-struct EarlierMap {
-  slam::Camera camera;
-  bool metric = false;
-  std::shared_ptr<const slam::Map> map;  ///< null: there is none
-};
-
-bool same_camera(const slam::Camera& a, const slam::Camera& b) {
-  constexpr double kFocalShare = 1e-3;
-  constexpr double kCentrePx = 0.5;
-  return a.lens == b.lens && std::abs(a.fx - b.fx) < kFocalShare * std::abs(a.fx) &&
-         std::abs(a.fy - b.fy) < kFocalShare * std::abs(a.fy) &&
-         std::abs(a.cx - b.cx) < kCentrePx && std::abs(a.cy - b.cy) < kCentrePx &&
-         a.distortion == b.distortion;
-}
-
-/// A guessed camera is the one that the map has refined.
-EarlierMap read_earlier_map(const std::string& folder, const Sequence& sequence, bool rgbd) {
-  EarlierMap earlier{sequence.camera(), rgbd, nullptr};
-  if (folder.empty()) return earlier;
-  const std::filesystem::path path = std::filesystem::path(folder) / "map.bin";
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) {
-    throw UserError(folder + ": is not a reconstruction folder (it has no map.bin)");
-  }
-  Reconstruction reconstruction;
-  read_map_bin(path, reconstruction, true);
-  if (reconstruction.map == nullptr || reconstruction.map->keyframes.empty()) {
-    throw UserError(path.string() + ": has no map to go on from");
-  }
-  const slam::Camera& camera = reconstruction.camera;
-  const slam::Camera& wanted = sequence.camera();
-  if (camera.width != wanted.width || camera.height != wanted.height ||
-      (!(camera.guessed && wanted.guessed) && !same_camera(camera, wanted))) {
-    throw UserError(path.string() + ": was made with another camera than this sequence's");
-  }
-  if (rgbd && !reconstruction.metric) {
-    throw UserError(path.string() + ": has no metric scale; use --mode mono");
-  }
-  return {camera, reconstruction.metric, reconstruction.map};
 }
 
 /// Reads and prepares frames one ahead of the one in use, on a second thread where allowed. Whether
@@ -122,7 +86,7 @@ class FramesAhead {
   struct Prepared {
     std::optional<slam::ImageFeatures> image;  ///< nothing: unreadable
     std::string error;
-    double milliseconds = 0.0;
+    double milliseconds = 0.0;  ///< without reading
   };
 
   void request(int index, bool initialised) {
@@ -135,7 +99,12 @@ class FramesAhead {
   Prepared prepare(int index, bool initialised) const {
     Prepared prepared;
     try {
-      prepared.image = system_.prepare(sequence_.read(index), initialised);
+      const slam::FrameInput frame = sequence_.read(index);
+      const auto start = std::chrono::steady_clock::now();
+      prepared.image = system_.prepare(frame, initialised);
+      const std::chrono::duration<double, std::milli> taken =
+          std::chrono::steady_clock::now() - start;
+      prepared.milliseconds = taken.count();
     } catch (const UserError& error) {
       prepared.error = error.what();
     }
@@ -245,6 +214,8 @@ void TwoPassTracker::first_pass() {
     record.timestamp =
         prepared.image ? prepared.image->timestamp : sequence_.timestamp(record.index);
     if (prepared.image) {
+      times_[static_cast<std::size_t>(position)].emplace_back("Feature Extraction",
+                                                              prepared.milliseconds);
       record_first(position, system_.track(*prepared.image));
     } else {
       if (!options_.skip_unreadable) throw UserError(prepared.error);

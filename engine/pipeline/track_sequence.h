@@ -20,6 +20,9 @@ struct TrackSequenceOptions {
   bool skip_unreadable = false;
   std::optional<Eigen::Vector3d> up;    ///< unit, world; estimated where not given
   std::string plane_merge = "default";  ///< default | paper
+  std::string plane_fit = "graph-cut";  ///< graph-cut | plain: sequential RANSAC alone
+  bool map_planes = true;
+  bool refine_jointly = true;  ///< final refinement of points, poses and planes together
   int features = 1000;
   bool close_loops = true;
   std::string map;  ///< reconstruction folder to go on from; empty: start anew

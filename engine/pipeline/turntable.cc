@@ -8,6 +8,7 @@
 #include "engine/assets.h"
 #include "engine/convert.h"
 #include "engine/look/object_layer.h"
+#include "render/gltf/animate.h"
 #include "render/gltf/import.h"
 #include "render/renderer.h"
 
@@ -41,61 +42,142 @@ render::PlanePatch ground(const Eigen::Vector3d& centre, double radius) {
   return patch;
 }
 
-cv::Mat light_backdrop(int side) {
-  cv::Mat backdrop(side, side, CV_8UC3);
-  for (int y = 0; y < side; ++y) backdrop.row(y).setTo(cv::Scalar::all(232 - 40 * y / side));
-  return backdrop;
+cv::Mat backdrop(int side) {
+  cv::Mat picture(side, side, CV_8UC3);
+  for (int y = 0; y < side; ++y) picture.row(y).setTo(cv::Scalar::all(190 - 50 * y / side));
+  return picture;
+}
+
+/// A bright ceiling, a window to the left of the camera, a dim floor: uniform light would show
+/// neither form nor gloss.
+render::Light studio_light(const Eigen::Matrix3d& world_from_cam) {
+  const Eigen::Vector3d sun = (world_from_cam * Eigen::Vector3d(-0.5, -0.9, -0.5)).normalized();
+  render::Light light = render::Light::uniform(glm::vec3(0.5F), {to_glm(sun), glm::vec3(0.7F)});
+  const Eigen::Vector3d window = world_from_cam * Eigen::Vector3d(-0.25, 0.0, -0.1);
+  // Bands of the first order are y, z, x.
+  light.ambient_sh[1] = glm::vec3(static_cast<float>(0.45 + window.y()));
+  light.ambient_sh[2] = glm::vec3(static_cast<float>(window.z()));
+  light.ambient_sh[3] = glm::vec3(static_cast<float>(window.x()));
+  return light;
+}
+
+struct View {
+  slam::Camera camera;
+  slam::Pose world_from_cam = slam::Pose::Identity();
+  double near_m = 0.01;
+  double far_m = 100.0;
+};
+
+/// What the views share: where the model is and how large.
+struct Stage {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  double radius = 1.0;
+  double floor_y = 0.0;
+};
+
+Stage stage_of(const render::Model& model) {
+  const render::Bounds bounds = render::model_bounds(model);
+  const Eigen::Vector3d low(bounds.min.x, bounds.min.y, bounds.min.z);
+  const Eigen::Vector3d high(bounds.max.x, bounds.max.y, bounds.max.z);
+  return {0.5 * (low + high), std::max(0.5 * (high - low).norm(), 1e-6), low.y()};
+}
+
+slam::Camera square_camera(int side, double focal) {
+  slam::Camera camera;
+  camera.width = camera.height = side;
+  camera.fx = camera.fy = focal;
+  camera.cx = camera.cy = 0.5 * (side - 1);
+  return camera;
+}
+
+View turned_view(const Stage& stage, const TurntableOptions& options, int number) {
+  const double elevation = options.elevation_deg * std::numbers::pi / 180.0;
+  const double azimuth = options.azimuth_deg * std::numbers::pi / 180.0 +
+                         2.0 * std::numbers::pi * number / options.views;
+  const Eigen::Vector3d towards(std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
+                                std::cos(elevation) * std::cos(azimuth));
+  const double distance = 2.4 * stage.radius * kFocalShare;
+  View view;
+  view.camera = square_camera(options.view_size_px, kFocalShare * options.view_size_px);
+  view.world_from_cam = look_at(stage.centre + distance * towards, stage.centre);
+  view.near_m = 0.1 * (distance - stage.radius);
+  view.far_m = 4.0 * distance;
+  return view;
+}
+
+/// Through one of the model's cameras. An orthographic one is drawn from so far that its rays
+/// differ by less than a pixel over the model.
+View own_view(const Stage& stage, const render::Model& model, const TurntableOptions& options) {
+  const render::ModelCamera& own = model.cameras[static_cast<std::size_t>(options.camera)];
+  const render::ModelPose pose =
+      render::evaluate_pose(model, options.animation, static_cast<float>(options.time_s));
+  Eigen::Matrix4d world_from_node;
+  const glm::mat4& node = pose.model_from_node[static_cast<std::size_t>(own.node)];
+  for (int column = 0; column < 4; ++column) {
+    for (int row = 0; row < 4; ++row) {
+      world_from_node(row, column) = static_cast<double>(node[column][row]);
+    }
+  }
+  View view;
+  Eigen::Matrix3d axes = world_from_node.topLeftCorner<3, 3>();
+  for (int i = 0; i < 3; ++i) axes.col(i).normalize();
+  view.world_from_cam.linear() << axes.col(0), -axes.col(1), -axes.col(2);
+  view.world_from_cam.translation() = world_from_node.col(3).head<3>();
+  const double side = options.view_size_px;
+  if (own.perspective) {
+    view.camera =
+        square_camera(options.view_size_px, 0.5 * side / std::tan(0.5 * double{own.y_fov_rad}));
+  } else {
+    constexpr double kFar = 200.0;
+    const double back = kFar * std::max(stage.radius, double{own.half_height});
+    view.world_from_cam.translation() += back * axes.col(2);
+    view.camera = square_camera(options.view_size_px, 0.5 * side / double{own.half_height} * back);
+  }
+  const double away = (stage.centre - view.world_from_cam.translation()).norm();
+  view.near_m = std::max(0.001 * stage.radius, 0.5 * (away - 2.0 * stage.radius));
+  view.far_m = 2.0 * (away + 4.0 * stage.radius);
+  return view;
 }
 
 }  // namespace
 
+bool has_camera(const render::Model& model, int camera) {
+  return camera >= 0 && static_cast<std::size_t>(camera) < model.cameras.size();
+}
+
 cv::Mat draw_turntable(const std::shared_ptr<const render::Model>& model,
                        const TurntableOptions& options) {
-  const render::Bounds bounds = render::model_bounds(*model);
-  const Eigen::Vector3d low(bounds.min.x, bounds.min.y, bounds.min.z);
-  const Eigen::Vector3d high(bounds.max.x, bounds.max.y, bounds.max.z);
-  const Eigen::Vector3d centre = 0.5 * (low + high);
-  const double radius = std::max(0.5 * (high - low).norm(), 1e-6);
-  const double distance = 2.4 * radius * kFocalShare;
-
+  const Stage stage = stage_of(*model);
   render::LayerScene scene;
   render::Instance instance;
   instance.model = model;
   instance.animation = options.animation;
   instance.animation_time_s = static_cast<float>(options.time_s);
   scene.instances.push_back(instance);
-  scene.catchers.push_back(ground({centre.x(), low.y(), centre.z()}, 2.0 * radius));
-
-  slam::Camera camera;
-  camera.width = camera.height = options.view_size_px;
-  camera.fx = camera.fy = kFocalShare * options.view_size_px;
-  camera.cx = camera.cy = 0.5 * (options.view_size_px - 1);
+  scene.catchers.push_back(
+      ground({stage.centre.x(), stage.floor_y, stage.centre.z()}, 2.0 * stage.radius));
   render::RendererOptions renderer_options;
   renderer_options.shader_dir = asset("shaders").string();
+  if (!options.simplify) renderer_options.simplify_px = 0.0F;
   render::Renderer renderer(renderer_options);
 
-  const int columns = std::min(options.views, kColumns);
-  const int rows = (options.views + columns - 1) / columns;
-  cv::Mat sheet(rows * options.view_size_px, columns * options.view_size_px, CV_8UC3,
-                cv::Scalar(255, 255, 255));
-  const double elevation = options.elevation_deg * std::numbers::pi / 180.0;
-  for (int view = 0; view < options.views; ++view) {
-    const double azimuth = 2.0 * std::numbers::pi * view / options.views;
-    const Eigen::Vector3d towards(std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
-                                  std::cos(elevation) * std::cos(azimuth));
-    const slam::Pose world_from_cam = look_at(centre + distance * towards, centre);
-    const Eigen::Vector3d sun =
-        (world_from_cam.linear() * Eigen::Vector3d(-0.5, -0.9, -0.5)).normalized();
-    scene.light = render::Light::uniform(glm::vec3(0.55F), {to_glm(sun), glm::vec3(0.6F)});
-    render::Camera render_camera = to_render_camera(camera, world_from_cam.inverse());
-    render_camera.near_plane = static_cast<float>(0.1 * (distance - radius));
-    render_camera.far_plane = static_cast<float>(4.0 * distance);
-    render::Layer layer = renderer.draw_layer(scene, render_camera);
-    cv::Mat picture = light_backdrop(options.view_size_px);
+  const bool own = has_camera(*model, options.camera);
+  const int views = own ? 1 : options.views;
+  const int columns = std::min(views, kColumns);
+  const int rows = (views + columns - 1) / columns;
+  const int side = options.view_size_px;
+  cv::Mat sheet(rows * side, columns * side, CV_8UC3, cv::Scalar(255, 255, 255));
+  for (int number = 0; number < views; ++number) {
+    const View view = own ? own_view(stage, *model, options) : turned_view(stage, options, number);
+    scene.light = studio_light(view.world_from_cam.linear());
+    render::Camera camera = to_render_camera(view.camera, view.world_from_cam.inverse());
+    camera.near_plane = static_cast<float>(view.near_m);
+    camera.far_plane = static_cast<float>(view.far_m);
+    render::Layer layer = renderer.draw_layer(scene, camera);
+    cv::Mat picture = backdrop(side);
     composite(view_layer(layer), picture);
-    picture.copyTo(sheet(cv::Rect((view % columns) * options.view_size_px,
-                                  (view / columns) * options.view_size_px, options.view_size_px,
-                                  options.view_size_px)));
+    picture.copyTo(
+        sheet(cv::Rect((number % columns) * side, (number / columns) * side, side, side)));
   }
   return sheet;
 }

@@ -13,7 +13,13 @@ struct TurntableOptions {
   int animation = -1;      ///< -1: rest pose
   double time_s = 0.0;
   double elevation_deg = 20.0;  ///< of the camera over the horizon
+  double azimuth_deg = 0.0;     ///< of the first view: 0 looks at the model's front (+z)
+  int camera = -1;              ///< of the model's own cameras: one view through it instead
+  bool simplify = true;         ///< fewer triangles where the screen does not show the difference
 };
+
+/// Whether `model` has a camera of that index.
+bool has_camera(const render::Model& model, int camera);
 
 /// The model on a light ground, one view beside the other in rows of at most four, CV_8UC3 BGR.
 cv::Mat draw_turntable(const std::shared_ptr<const render::Model>& model,

@@ -277,6 +277,20 @@ CameraSettings read_camera_file(const fs::path& file) {
   return settings;
 }
 
+slam::Pose read_body_from_cam(const fs::path& file) {
+  try {
+    const YAML::Node root = YAML::Load(read_yaml_text(file));
+    if (!root.IsMap() || !root["T_BS"]) fail(file, "'T_BS' is missing");
+    const std::vector<double> t = numbers(file, root["T_BS"], "T_BS");
+    if (t.size() != 16) fail(file, "'T_BS' must have 16 values");
+    slam::Pose pose = slam::Pose::Identity();
+    for (int i = 0; i < 12; ++i) pose.matrix()(i / 4, i % 4) = t[static_cast<std::size_t>(i)];
+    return pose;
+  } catch (const YAML::Exception& error) {
+    fail(file, "not valid YAML: " + error.msg);
+  }
+}
+
 void write_camera_file(const fs::path& file, const CameraSettings& settings) {
   const slam::Camera& camera = settings.camera;
   std::ofstream out(file);

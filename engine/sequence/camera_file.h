@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "slam/data/camera.h"
+#include "slam/data/types.h"
 
 namespace planecast::engine {
 
@@ -26,6 +27,9 @@ CameraSettings load_camera(const std::string& preset_or_file);
 /// Reads our own format (see write_camera_file), OpenCV's and ROS's calibration files
 /// (camera_matrix, distortion_coefficients) and EuRoC's sensor.yaml.
 CameraSettings read_camera_file(const std::filesystem::path& file);
+
+/// EuRoC's T_BS of a sensor.yaml: the camera's pose in the body's frame. Throws UserError.
+slam::Pose read_body_from_cam(const std::filesystem::path& file);
 
 /// Writes model, width, height, fx, fy, cx, cy, distortion, fps, depth_factor as YAML.
 void write_camera_file(const std::filesystem::path& file, const CameraSettings& settings);

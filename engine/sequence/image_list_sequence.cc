@@ -9,6 +9,7 @@
 
 #include "engine/sequence/frame_setup.h"
 #include "engine/sequence/image_file.h"
+#include "engine/sequence/numbered_frames.h"
 #include "engine/user_error.h"
 
 namespace planecast::engine {
@@ -18,9 +19,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kDefaultFps = 30.0;
-
-/// index/fps with 6 decimals, as the lists of this project print times.
-double nominal_time(int index, double fps) { return std::round(index / fps * 1e6) / 1e6; }
 
 double median_fps(const std::vector<FrameFiles>& frames, double fallback) {
   std::vector<double> steps;
@@ -46,8 +44,8 @@ class ImageListSequence : public Sequence {
         setup_(set_up_frames(options, list_.camera_file, first_image_size(), list_.warnings)) {
     const double given_fps = setup_.settings.fps.value_or(kDefaultFps);
     if (!list_.has_timestamps) {
-      for (std::size_t i = 0; i < list_.frames.size(); ++i) {
-        list_.frames[i].timestamp = nominal_time(static_cast<int>(i), given_fps);
+      for (FrameFiles& frame : list_.frames) {
+        frame.timestamp = nominal_time(frame.timestamp, given_fps);
       }
     }
     fps_ = list_.has_timestamps ? median_fps(list_.frames, given_fps) : given_fps;

@@ -22,13 +22,14 @@ struct FrameFiles {
 struct ImageList {
   std::filesystem::path path;
   std::vector<FrameFiles> frames;
-  bool has_timestamps = true;         ///< false: they are to be made from the frame rate
-  std::filesystem::path camera_file;  ///< found in the folder; may be empty
+  bool has_timestamps = true;  ///< false: they number the frames; the frame rate makes them times
+  std::filesystem::path camera_file;  ///< found in the folder, or the preset of its layout
   std::vector<std::string> warnings;
 };
 
-/// Folders with rgb.txt (TUM), associations.txt (ICL-NUIM), mav0/cam0 (EuRoC), or just images in
-/// the natural order of their names; also a single image. Throws UserError.
+/// Folders with rgb.txt (TUM), associations.txt (ICL-NUIM), mav0/cam0 (EuRoC),
+/// frame-NUMBER.color.png (7-Scenes), or just images in the natural order of their names; also a
+/// single image. Throws UserError.
 ImageList list_images(const std::filesystem::path& path);
 
 /// Opens the files behind a list.

@@ -7,6 +7,7 @@
 #include "engine/sequence/image_file.h"
 #include "engine/sequence/image_list_sequence.h"
 #include "engine/sequence/list_file.h"
+#include "engine/sequence/numbered_frames.h"
 #include "engine/user_error.h"
 
 namespace planecast::engine {
@@ -69,6 +70,7 @@ ImageList list_associations(const fs::path& folder) {
   const fs::path file = folder / "associations.txt";
   ImageList list;
   list.path = folder;
+  bool depth_first = false;
   for (const ListLine& line : read_list_lines(file)) {
     const auto time_a = parse_number(line.fields[0]);
     const auto time_b = line.fields.size() == 4 ? parse_number(line.fields[2]) : std::nullopt;
@@ -76,7 +78,7 @@ ImageList list_associations(const fs::path& folder) {
       throw UserError(
           fmt::format("{}:{}: expected 'time file time file'", file.string(), line.number));
     }
-    const bool depth_first = line.fields[1].find("depth") != std::string::npos;
+    depth_first = line.fields[1].find("depth") != std::string::npos;
     FrameFiles frame;
     frame.timestamp = depth_first ? *time_b : *time_a;
     frame.image = folder / line.fields[depth_first ? 3 : 1];
@@ -88,6 +90,7 @@ ImageList list_associations(const fs::path& folder) {
   const bool numbered =
       list.frames.size() > 1 && list.frames[1].timestamp - list.frames[0].timestamp >= 1.0;
   list.has_timestamps = !numbered;
+  if (numbered && depth_first) list.camera_file = "icl-nuim";
   return list;
 }
 
@@ -113,7 +116,25 @@ ImageList list_euroc(const fs::path& folder, const fs::path& camera_folder) {
   return list;
 }
 
+/// 7-Scenes: frame-000000.color.png with .depth.png beside it.
+ImageList list_seven_scenes(const fs::path& folder, const std::vector<NumberedFile>& images) {
+  ImageList list;
+  list.path = folder;
+  list.has_timestamps = false;
+  list.camera_file = "7scenes";
+  for (const NumberedFile& image : images) {
+    std::string depth = image.file.filename().string();
+    depth.replace(depth.rfind(".color."), 7, ".depth.");
+    FrameFiles frame{static_cast<double>(image.number), image.file, {}, {}};
+    if (fs::exists(folder / depth)) frame.depth = folder / depth;
+    list.frames.push_back(frame);
+  }
+  return list;
+}
+
 ImageList list_folder(const fs::path& folder) {
+  const std::vector<NumberedFile> seven_scenes = numbered_files(folder, ".color.png");
+  if (!seven_scenes.empty()) return list_seven_scenes(folder, seven_scenes);
   ImageList list;
   list.path = folder;
   list.has_timestamps = false;
@@ -125,6 +146,9 @@ ImageList list_folder(const fs::path& folder) {
   std::sort(list.frames.begin(), list.frames.end(), [](const FrameFiles& a, const FrameFiles& b) {
     return natural_less(a.image.filename().string(), b.image.filename().string());
   });
+  for (std::size_t i = 0; i < list.frames.size(); ++i) {
+    list.frames[i].timestamp = static_cast<double>(i);
+  }
   if (list.frames.empty()) {
     throw UserError(folder.string() + ": holds neither rgb.txt nor images (png, jpg, bmp, tif)");
   }

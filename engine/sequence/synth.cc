@@ -13,6 +13,7 @@
 #include "engine/convert.h"
 #include "engine/sequence/camera_file.h"
 #include "engine/sequence/synth/camera_effects.h"
+#include "engine/sequence/synth/lens.h"
 #include "engine/sequence/synth/painted_scene.h"
 #include "engine/sequence/synth/random.h"
 #include "engine/sequence/synth/scenes.h"
@@ -30,12 +31,7 @@ constexpr double kFarthestDepth = 8.0;  // metres: what a structured-light senso
 
 CameraSettings synthetic_camera(const SynthOptions& options) {
   CameraSettings settings;
-  slam::Camera& camera = settings.camera;
-  camera.width = options.width;
-  camera.height = options.height;
-  camera.fx = camera.fy = 525.0 * options.width / 640.0;
-  camera.cx = 0.5 * (options.width - 1);
-  camera.cy = 0.5 * (options.height - 1);
+  settings.camera = synth::lens_camera(options.lens, options.width, options.height);
   settings.fps = options.fps;
   settings.depth_factor = options.depth_factor;
   return settings;
@@ -49,6 +45,11 @@ void check(const SynthOptions& options) {
   if (!(options.fps > 0.0) || options.fps > 1000.0) {
     throw UserError(
         fmt::format("{} frames per second: must be above 0 and at most 1000", options.fps));
+  }
+  const std::vector<std::string> lenses = synth::lens_names();
+  if (std::find(lenses.begin(), lenses.end(), options.lens) == lenses.end()) {
+    throw UserError(
+        fmt::format("{}: no such synthetic lens ({})", options.lens, fmt::join(lenses, ", ")));
   }
   if (!(options.depth_factor > 0.0)) throw UserError("the depth factor must be positive");
 }
@@ -125,19 +126,23 @@ class Generator {
       : options_(options),
         scene_(std::move(scene)),
         camera_(synthetic_camera(options).camera),
+        lens_(camera_),
         renderer_(renderer_options(options)),
         painted_(synth::paint_scene(scene_.model, texture_detail(options))),
-        effects_({}, options.width, options.height, synth::named_seed("effects", options.seed)) {}
+        effects_(scene_.effects, options.width, options.height,
+                 synth::named_seed("effects", options.seed)) {}
 
   FramePictures draw(int frame, double time_s) {
     const slam::Pose cam_from_world = scene_.path.world_from_cam(time_s).inverse();
     const render::OpaqueImages images =
-        renderer_.draw_opaque(painted_, to_render_camera(camera_, cam_from_world));
+        renderer_.draw_opaque(painted_, to_render_camera(lens_.drawn_camera(), cam_from_world));
     FramePictures pictures;
-    pictures.bgr = bgr_of(images.rgb);
-    pictures.mask = mask_of(images.labels, hidden_labels(scene_.path.world_from_cam(time_s)));
-    cv::Mat depth_m(camera_.height, camera_.width, CV_32F);
-    std::copy(images.depth.pixels.begin(), images.depth.pixels.end(), depth_m.begin<float>());
+    pictures.bgr = lens_.warp_colors(bgr_of(images.rgb));
+    pictures.mask = lens_.warp_nearest(
+        mask_of(images.labels, hidden_labels(scene_.path.world_from_cam(time_s))));
+    cv::Mat drawn_depth_m(images.depth.height, images.depth.width, CV_32F);
+    std::copy(images.depth.pixels.begin(), images.depth.pixels.end(), drawn_depth_m.begin<float>());
+    cv::Mat depth_m = lens_.warp_nearest(drawn_depth_m);
     if (is_covered(scene_, time_s)) {
       pictures.bgr = synth::covered_lens(camera_.width, camera_.height, frame, options_.seed);
       pictures.mask.setTo(0);
@@ -176,6 +181,7 @@ class Generator {
   const SynthOptions& options_;
   synth::Scene scene_;
   slam::Camera camera_;
+  synth::LensWarp lens_;
   render::Renderer renderer_;
   render::OpaqueScene painted_;
   synth::CameraEffects effects_;
@@ -211,6 +217,7 @@ void make_folders(const fs::path& out) {
 }  // namespace
 
 std::vector<std::string> synthetic_scene_names() { return synth::scene_names(); }
+std::vector<std::string> synthetic_lens_names() { return synth::lens_names(); }
 
 void write_synthetic(const SynthOptions& options, const fs::path& out,
                      const std::function<void(int, int)>& progress) {

@@ -36,12 +36,19 @@ VertexArrayHandle make_array(const Gl& gl, const BufferHandle& shape, const Buff
 
 void MeshBuffers::draw(const Gl& gl) const {
   gl.BindVertexArray(vertex_array.id());
-  gl.DrawElements(GL_TRIANGLES, index_count, GL_UNSIGNED_INT, nullptr);
+  gl.DrawElements(GL_TRIANGLES, levels.front().count, GL_UNSIGNED_INT, nullptr);
 }
 
 MeshBuffers upload_mesh(const Gl& gl, std::span<const ShapeVertex> shape,
                         std::span<const SurfaceVertex> surface,
                         std::span<const std::uint32_t> indices) {
+  return upload_levels(gl, shape, surface, indices,
+                       {{0, static_cast<GLsizei>(indices.size()), 0.0F}});
+}
+
+MeshBuffers upload_levels(const Gl& gl, std::span<const ShapeVertex> shape,
+                          std::span<const SurfaceVertex> surface,
+                          std::span<const std::uint32_t> indices, std::vector<IndexRange> levels) {
   MeshBuffers mesh;
   mesh.shape = BufferHandle(gl);
   mesh.surface = BufferHandle(gl);
@@ -49,7 +56,7 @@ MeshBuffers upload_mesh(const Gl& gl, std::span<const ShapeVertex> shape,
   upload(gl, mesh.shape, shape);
   upload(gl, mesh.surface, surface);
   upload(gl, mesh.indices, indices);
-  mesh.index_count = static_cast<GLsizei>(indices.size());
+  mesh.levels = std::move(levels);
   mesh.vertex_array = make_array(gl, mesh.shape, mesh.surface, mesh.indices);
   return mesh;
 }

@@ -57,6 +57,10 @@ void Program::set(std::string_view name, std::span<const glm::vec3> values) cons
   gl_->ProgramUniform3fv(handle_.id(), location(name), static_cast<GLsizei>(values.size()),
                          glm::value_ptr(values.front()));
 }
+void Program::set(std::string_view name, std::span<const glm::vec4> values) const {
+  gl_->ProgramUniform4fv(handle_.id(), location(name), static_cast<GLsizei>(values.size()),
+                         glm::value_ptr(values.front()));
+}
 
 GLint Program::location(std::string_view name) const {
   const auto found = locations_.find(name);

@@ -26,6 +26,7 @@ class Program {
   void set(std::string_view name, const glm::mat3& value) const;
   void set(std::string_view name, const glm::mat4& value) const;
   void set(std::string_view name, std::span<const glm::vec3> values) const;
+  void set(std::string_view name, std::span<const glm::vec4> values) const;
 
  private:
   GLint location(std::string_view name) const;

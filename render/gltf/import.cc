@@ -3,11 +3,10 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
-#include <array>
-#include <fstream>
-#include <string_view>
 
 #include "render/gltf/accessors.h"
+#include "render/gltf/decode_image.h"
+#include "render/gltf/document.h"
 #include "render/gltf/materials.h"
 #include "render/gltf/model.h"
 #include "render/gltf/nodes.h"
@@ -15,15 +14,6 @@
 
 namespace planecast::render {
 namespace {
-
-constexpr std::array<std::string_view, 4> kSupportedExtensions = {
-    "KHR_texture_transform", "KHR_materials_unlit", "KHR_mesh_quantization",
-    "KHR_materials_emissive_strength"};
-
-bool supported(const std::string& extension) {
-  return std::find(kSupportedExtensions.begin(), kSupportedExtensions.end(), extension) !=
-         kSupportedExtensions.end();
-}
 
 std::vector<std::string> lines(const std::string& text) {
   std::vector<std::string> out;
@@ -39,20 +29,6 @@ std::vector<std::string> lines(const std::string& text) {
   return out;
 }
 
-/// A picture that cannot be decoded leaves its texture out; the model is still worth drawing.
-bool load_image(tinygltf::Image* image, const int index, std::string*, std::string* warning,
-                int width, int height, const unsigned char* bytes, int size, void*) {
-  std::string error;
-  const bool ok = size > 0 && tinygltf::LoadImageData(image, index, &error, warning, width, height,
-                                                      bytes, size, nullptr);
-  if (!ok) {
-    image->image.clear();
-    image->width = image->height = -1;
-    *warning += "image " + std::to_string(index) + " cannot be decoded, it is left out\n";
-  }
-  return true;
-}
-
 /// The JSON library's messages begin with its own name in brackets.
 std::string reason(const std::string& message) {
   const auto all = lines(message);
@@ -63,37 +39,25 @@ std::string reason(const std::string& message) {
   return "is not valid JSON: " + (bracket == std::string::npos ? first : first.substr(bracket + 2));
 }
 
-bool is_binary(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw ImportError("cannot be opened");
-  std::array<char, 4> magic{};
-  in.read(magic.data(), magic.size());
-  if (in.gcount() < 4) throw ImportError("is not a glTF file");
-  return std::string_view(magic.data(), 4) == "glTF";
-}
-
-tinygltf::Model parse(const std::string& path, std::vector<std::string>& warnings) {
+/// The parser sees neither buffers nor images: they are loaded already, and it opens no files.
+tinygltf::Model parse(GltfDocument& document, std::vector<std::string>& warnings) {
+  document.json.erase("buffers");
+  document.json.erase("images");
+  const std::string text =
+      document.json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   tinygltf::TinyGLTF loader;
-  loader.SetImageLoader(&load_image, nullptr);
   tinygltf::Model file;
   std::string error;
   std::string warning;
-  const bool ok = is_binary(path) ? loader.LoadBinaryFromFile(&file, &error, &warning, path)
-                                  : loader.LoadASCIIFromFile(&file, &error, &warning, path);
+  const bool ok = loader.LoadASCIIFromString(&file, &error, &warning, text.data(),
+                                             static_cast<unsigned>(text.size()), "");
   for (const std::string& line : lines(warning)) warnings.push_back(line);
   if (!ok) throw ImportError(reason(error));
+  for (Bytes& bytes : document.buffers) {
+    file.buffers.emplace_back();
+    file.buffers.back().data = std::move(bytes);
+  }
   return file;
-}
-
-void check_extensions(const tinygltf::Model& file, std::vector<std::string>& warnings) {
-  for (const std::string& extension : file.extensionsRequired) {
-    if (!supported(extension)) throw ImportError("needs the unsupported extension " + extension);
-  }
-  std::string ignored;
-  for (const std::string& extension : file.extensionsUsed) {
-    if (!supported(extension)) ignored += (ignored.empty() ? "" : ", ") + extension;
-  }
-  if (!ignored.empty()) warnings.push_back("unsupported extensions are ignored: " + ignored);
 }
 
 /// Joint numbers beyond their skin would read foreign memory when the mesh is drawn.
@@ -112,23 +76,38 @@ void check_joints(const Model& model) {
   }
 }
 
-std::shared_ptr<const Model> convert(const tinygltf::Model& file,
+void import_images(const GltfDocument& document, Model& model, std::vector<std::string>& warnings) {
+  for (std::size_t i = 0; i < document.images.size(); ++i) {
+    DecodedImage decoded = decode_image(document.images[i]);
+    // A picture that cannot be decoded leaves its texture out; the model is still worth drawing.
+    if (!decoded.error.empty() && !document.images[i].empty()) {
+      warnings.push_back("image " + std::to_string(i) + " " + decoded.error + ", it is left out");
+    }
+    model.images.push_back(std::move(decoded.image));
+  }
+}
+
+std::shared_ptr<const Model> convert(const GltfDocument& document, const tinygltf::Model& file,
+                                     const ImportOptions& options,
                                      std::vector<std::string>& warnings) {
   auto model = std::make_shared<Model>();
+  import_images(document, *model, warnings);
   import_materials(file, *model, warnings);
+  const int variant = find_variant(file, options.variant, *model);
   for (const auto& from : file.meshes) {
     Mesh mesh;
     mesh.weights.assign(from.weights.begin(), from.weights.end());
     for (const auto& primitive : from.primitives) {
-      if (auto converted = import_primitive(file, primitive, model->materials, warnings)) {
+      if (auto converted = import_primitive(file, primitive, model->materials, variant, warnings)) {
         mesh.primitives.push_back(std::move(*converted));
       }
     }
     model->meshes.push_back(std::move(mesh));
   }
-  import_nodes(file, *model);
+  import_nodes(file, options.scene, *model);
   import_skins(file, *model);
   import_animations(file, *model);
+  import_cameras_and_lights(file, *model);
   check_joints(*model);
   return model;
 }
@@ -152,12 +131,12 @@ void keep_first_of_each(std::vector<std::string>& warnings) {
 
 }  // namespace
 
-ImportResult import_gltf(const std::string& path) {
+ImportResult import_gltf(const std::string& path, const ImportOptions& options) {
   ImportResult result;
   try {
-    const tinygltf::Model file = parse(path, result.warnings);
-    check_extensions(file, result.warnings);
-    result.model = convert(file, result.warnings);
+    GltfDocument document = read_document(path, result.warnings);
+    const tinygltf::Model file = parse(document, result.warnings);
+    result.model = convert(document, file, options, result.warnings);
     if (draws_nothing(*result.model)) result.warnings.emplace_back("it has nothing to draw");
   } catch (const std::exception& error) {
     // Besides our own, the parser's and std::bad_alloc for sizes that lie.

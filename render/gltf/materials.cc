@@ -10,26 +10,23 @@
 namespace planecast::render {
 namespace {
 
-ImageU8 convert_image(const tinygltf::Image& from) {
-  if (from.width <= 0 || from.height <= 0 || from.component < 1 || from.component > 4) return {};
-  ImageU8 image(from.width, from.height, from.component);
-  const std::size_t bytes = from.bits == 16 ? 2 : 1;
-  if (from.bits > 16 || from.image.size() < image.pixels.size() * bytes) return {};
-  // Of a 16-bit sample the high byte (little endian) is what an 8-bit texture can hold.
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    image.pixels[i] = from.image[i * bytes + bytes - 1];
+int image_of(const tinygltf::Texture& from) {
+  const auto webp = from.extensions.find("EXT_texture_webp");
+  if (webp != from.extensions.end() && webp->second.Has("source") &&
+      webp->second.Get("source").IsInt()) {
+    return webp->second.Get("source").GetNumberAsInt();
   }
-  return image;
+  return from.source;
 }
 
 ModelTexture convert_texture(const tinygltf::Model& file, const tinygltf::Texture& from,
-                             std::size_t index) {
+                             std::size_t images, std::size_t index) {
   ModelTexture texture;
-  if (from.source >= static_cast<int>(file.images.size()) ||
+  texture.image = image_of(from);
+  if (texture.image >= static_cast<int>(images) ||
       from.sampler >= static_cast<int>(file.samplers.size())) {
     throw ImportError("texture " + std::to_string(index) + " uses what does not exist");
   }
-  texture.image = from.source;
   if (from.sampler < 0) return texture;
   const auto& sampler = file.samplers[static_cast<std::size_t>(from.sampler)];
   const auto one_of = [](int value, std::initializer_list<int> allowed, int otherwise) {
@@ -96,12 +93,14 @@ class MaterialImporter {
     if (from.alphaMode == "MASK") material.alpha_mode = AlphaMode::kMask;
     if (from.alphaMode == "BLEND") material.alpha_mode = AlphaMode::kBlend;
     material.unlit = from.extensions.contains("KHR_materials_unlit");
-    apply_emissive_strength(from, material);
     material.base_color_map = slot(pbr.baseColorTexture);
     material.metallic_roughness_map = slot(pbr.metallicRoughnessTexture);
     material.normal_map = slot(from.normalTexture);
     material.occlusion_map = slot(from.occlusionTexture);
     material.emissive_map = slot(from.emissiveTexture);
+    for (const auto& [name, value] : from.extensions) {
+      if (value.IsObject()) apply_extension(name, value, material);
+    }
     return material;
   }
 
@@ -127,11 +126,67 @@ class MaterialImporter {
     return slot;
   }
 
-  static void apply_emissive_strength(const tinygltf::Material& from, Material& material) {
-    const auto found = from.extensions.find("KHR_materials_emissive_strength");
-    if (found == from.extensions.end() || !found->second.IsObject()) return;
-    const tinygltf::Value& strength = found->second.Get("emissiveStrength");
-    if (strength.IsNumber()) material.emissive *= static_cast<float>(strength.GetNumberAsDouble());
+  static void read(const tinygltf::Value& object, const char* key, float& out) {
+    if (!object.Has(key) || !object.Get(key).IsNumber()) return;
+    out = static_cast<float>(object.Get(key).GetNumberAsDouble());
+  }
+  static void read(const tinygltf::Value& object, const char* key, glm::vec3& out) {
+    if (!object.Has(key) || !object.Get(key).IsArray()) return;
+    const auto& list = object.Get(key);
+    for (std::size_t i = 0; i < std::min<std::size_t>(3, list.ArrayLen()); ++i) {
+      const auto& item = list.Get(static_cast<int>(i));
+      if (item.IsNumber()) out[static_cast<int>(i)] = static_cast<float>(item.GetNumberAsDouble());
+    }
+  }
+
+  /// A texture reference of an extension, which the parser leaves as it stands.
+  TextureSlot slot(const tinygltf::Value& object, const char* key) {
+    tinygltf::TextureInfo info;
+    if (!object.Has(key) || !object.Get(key).IsObject()) return {};
+    const auto& value = object.Get(key);
+    const auto integer = [&value](const char* name, int otherwise) {
+      return value.Has(name) && value.Get(name).IsInt() ? value.Get(name).GetNumberAsInt()
+                                                        : otherwise;
+    };
+    info.index = integer("index", -1);
+    info.texCoord = integer("texCoord", 0);
+    if (value.Has("extensions") && value.Get("extensions").Has("KHR_texture_transform")) {
+      info.extensions["KHR_texture_transform"] =
+          value.Get("extensions").Get("KHR_texture_transform");
+    }
+    return slot(info);
+  }
+
+  void apply_extension(const std::string& name, const tinygltf::Value& value, Material& material) {
+    if (name == "KHR_materials_emissive_strength") {
+      float strength = 1.0F;
+      read(value, "emissiveStrength", strength);
+      material.emissive *= strength;
+    } else if (name == "KHR_materials_ior") {
+      read(value, "ior", material.ior);
+    } else if (name == "KHR_materials_specular") {
+      read(value, "specularFactor", material.specular);
+      read(value, "specularColorFactor", material.specular_color);
+      material.specular_map = slot(value, "specularTexture");
+      material.specular_color_map = slot(value, "specularColorTexture");
+    } else if (name == "KHR_materials_transmission") {
+      read(value, "transmissionFactor", material.transmission);
+      material.transmission_map = slot(value, "transmissionTexture");
+    } else if (name == "KHR_materials_clearcoat") {
+      read(value, "clearcoatFactor", material.clearcoat);
+      read(value, "clearcoatRoughnessFactor", material.clearcoat_roughness);
+      material.clearcoat_map = slot(value, "clearcoatTexture");
+      material.clearcoat_roughness_map = slot(value, "clearcoatRoughnessTexture");
+      material.clearcoat_normal_map = slot(value, "clearcoatNormalTexture");
+      if (value.Has("clearcoatNormalTexture")) {
+        read(value.Get("clearcoatNormalTexture"), "scale", material.clearcoat_normal_scale);
+      }
+    } else if (name == "KHR_materials_sheen") {
+      read(value, "sheenColorFactor", material.sheen_color);
+      read(value, "sheenRoughnessFactor", material.sheen_roughness);
+      material.sheen_color_map = slot(value, "sheenColorTexture");
+      material.sheen_roughness_map = slot(value, "sheenRoughnessTexture");
+    }
   }
 
   const Model& model_;
@@ -142,13 +197,48 @@ class MaterialImporter {
 
 void import_materials(const tinygltf::Model& file, Model& model,
                       std::vector<std::string>& warnings) {
-  for (const auto& image : file.images) model.images.push_back(convert_image(image));
   for (std::size_t i = 0; i < file.textures.size(); ++i) {
-    model.textures.push_back(convert_texture(file, file.textures[i], i));
+    model.textures.push_back(convert_texture(file, file.textures[i], model.images.size(), i));
   }
   MaterialImporter importer(model, warnings);
   for (const auto& material : file.materials) model.materials.push_back(importer.convert(material));
   model.materials.emplace_back();
+}
+
+int find_variant(const tinygltf::Model& file, const std::string& name, Model& model) {
+  const auto found = file.extensions.find("KHR_materials_variants");
+  if (found != file.extensions.end() && found->second.Has("variants")) {
+    const auto& variants = found->second.Get("variants");
+    for (std::size_t i = 0; i < variants.ArrayLen(); ++i) {
+      const auto& variant = variants.Get(static_cast<int>(i));
+      const bool named = variant.Has("name") && variant.Get("name").IsString();
+      model.variant_names.push_back(named ? variant.Get("name").Get<std::string>() : "");
+    }
+  }
+  if (name.empty()) return -1;
+  const auto wanted = std::ranges::find(model.variant_names, name);
+  if (wanted == model.variant_names.end()) throw ImportError("has no variant '" + name + "'");
+  return static_cast<int>(wanted - model.variant_names.begin());
+}
+
+int material_of(const tinygltf::Primitive& primitive, int variant) {
+  const auto found = primitive.extensions.find("KHR_materials_variants");
+  if (variant < 0 || found == primitive.extensions.end() || !found->second.Has("mappings")) {
+    return primitive.material;
+  }
+  const auto& mappings = found->second.Get("mappings");
+  for (std::size_t i = 0; i < mappings.ArrayLen(); ++i) {
+    const auto& mapping = mappings.Get(static_cast<int>(i));
+    if (!mapping.Has("variants") || !mapping.Has("material")) continue;
+    const auto& variants = mapping.Get("variants");
+    for (std::size_t k = 0; k < variants.ArrayLen(); ++k) {
+      const auto& item = variants.Get(static_cast<int>(k));
+      if (item.IsInt() && item.GetNumberAsInt() == variant && mapping.Get("material").IsInt()) {
+        return mapping.Get("material").GetNumberAsInt();
+      }
+    }
+  }
+  return primitive.material;
 }
 
 }  // namespace planecast::render

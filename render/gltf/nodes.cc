@@ -62,7 +62,7 @@ void check_no_cycles(const Model& model) {
 }
 
 /// Without scenes everything that has no parent is drawn.
-std::vector<int> scene_roots(const tinygltf::Model& file, const Model& model) {
+std::vector<int> scene_roots(const tinygltf::Model& file, int wanted, const Model& model) {
   if (file.scenes.empty()) {
     std::vector<int> roots;
     for (std::size_t i = 0; i < model.nodes.size(); ++i) {
@@ -70,9 +70,58 @@ std::vector<int> scene_roots(const tinygltf::Model& file, const Model& model) {
     }
     return roots;
   }
-  const int scene = file.defaultScene < 0 ? 0 : file.defaultScene;
+  const int standard = file.defaultScene < 0 ? 0 : file.defaultScene;
+  const int scene = wanted < 0 ? standard : wanted;
   check_index(scene, file.scenes.size(), "scene");
   return file.scenes[static_cast<std::size_t>(scene)].nodes;
+}
+
+/// One attribute of EXT_mesh_gpu_instancing; empty where the node has none.
+std::vector<float> instance_values(const tinygltf::Model& file, const tinygltf::Value& attributes,
+                                   const char* name, int components) {
+  if (!attributes.Has(name) || !attributes.Get(name).IsInt()) return {};
+  return AccessorReader(file).floats(attributes.Get(name).GetNumberAsInt(), components);
+}
+
+/// Each is one more draw call for each primitive of the mesh.
+constexpr std::size_t kMostInstances = 20000;
+
+void add_instances_of(const tinygltf::Model& file, int index, Model& model) {
+  const auto& extensions = file.nodes[static_cast<std::size_t>(index)].extensions;
+  const auto found = extensions.find("EXT_mesh_gpu_instancing");
+  if (found == extensions.end() || !found->second.Has("attributes")) return;
+  const auto& attributes = found->second.Get("attributes");
+  const auto translations = instance_values(file, attributes, "TRANSLATION", 3);
+  const auto rotations = instance_values(file, attributes, "ROTATION", 4);
+  const auto scales = instance_values(file, attributes, "SCALE", 3);
+  const std::size_t count =
+      std::max({translations.size() / 3, rotations.size() / 4, scales.size() / 3});
+  if (model.nodes.size() + count > file.nodes.size() + kMostInstances) {
+    throw ImportError("has more than " + std::to_string(kMostInstances) + " instances");
+  }
+  const int mesh = std::exchange(model.nodes[static_cast<std::size_t>(index)].mesh, -1);
+  if (mesh < 0) return;
+  for (std::size_t i = 0; i < count; ++i) {
+    Node node;
+    node.parent = index;
+    node.mesh = mesh;
+    if (3 * i + 2 < translations.size()) {
+      node.rest.translation = glm::make_vec3(&translations[3 * i]);
+    }
+    if (3 * i + 2 < scales.size()) node.rest.scale = glm::make_vec3(&scales[3 * i]);
+    if (4 * i + 3 < rotations.size()) {
+      const float* q = &rotations[4 * i];
+      const glm::quat rotation(q[3], q[0], q[1], q[2]);
+      if (glm::length(rotation) > 0.0F) node.rest.rotation = glm::normalize(rotation);
+    }
+    model.order.push_back(static_cast<int>(model.nodes.size()));
+    model.nodes.push_back(std::move(node));
+  }
+}
+
+void add_instances(const tinygltf::Model& file, Model& model) {
+  const std::vector<int> order = model.order;
+  for (const int index : order) add_instances_of(file, index, model);
 }
 
 ChannelPath channel_path(const std::string& name) {
@@ -128,7 +177,7 @@ AnimationChannel convert_channel(const tinygltf::Model& file, const tinygltf::An
 
 }  // namespace
 
-void import_nodes(const tinygltf::Model& file, Model& model) {
+void import_nodes(const tinygltf::Model& file, int scene, Model& model) {
   for (const auto& node : file.nodes) {
     model.nodes.push_back(convert_node(node, model, file.skins.size()));
   }
@@ -136,7 +185,7 @@ void import_nodes(const tinygltf::Model& file, Model& model) {
   check_no_cycles(model);
 
   std::vector<std::uint8_t> seen(model.nodes.size(), 0);
-  std::vector<int> waiting = scene_roots(file, model);
+  std::vector<int> waiting = scene_roots(file, scene, model);
   std::reverse(waiting.begin(), waiting.end());
   while (!waiting.empty()) {
     const int index = waiting.back();
@@ -147,6 +196,8 @@ void import_nodes(const tinygltf::Model& file, Model& model) {
     const auto& children = file.nodes[static_cast<std::size_t>(index)].children;
     waiting.insert(waiting.end(), children.rbegin(), children.rend());
   }
+  for (const auto& named : file.scenes) model.scene_names.push_back(named.name);
+  add_instances(file, model);
 }
 
 void import_skins(const tinygltf::Model& file, Model& model) {
@@ -181,6 +232,70 @@ void import_animations(const tinygltf::Model& file, Model& model) {
           std::max(animation.duration_s, animation.channels.back().times_s.back());
     }
     model.animations.push_back(std::move(animation));
+  }
+}
+
+namespace {
+
+ModelCamera convert_camera(const tinygltf::Camera& from, int node) {
+  ModelCamera camera;
+  camera.name = from.name;
+  camera.node = node;
+  camera.perspective = from.type != "orthographic";
+  if (camera.perspective) {
+    camera.y_fov_rad = static_cast<float>(from.perspective.yfov);
+    camera.aspect = static_cast<float>(from.perspective.aspectRatio);
+  } else {
+    camera.half_height = std::abs(static_cast<float>(from.orthographic.ymag));
+    camera.aspect = std::abs(static_cast<float>(from.orthographic.xmag)) / camera.half_height;
+  }
+  const bool usable = camera.perspective ? camera.y_fov_rad > 0.0F && camera.y_fov_rad < 3.1F
+                                         : camera.half_height > 0.0F;
+  if (!usable) throw ImportError("a camera has a wrong field of view");
+  if (!std::isfinite(camera.aspect) || camera.aspect < 0.0F) camera.aspect = 0.0F;
+  return camera;
+}
+
+ModelLight convert_light(const tinygltf::Light& from, int node) {
+  ModelLight light;
+  light.node = node;
+  if (from.type == "directional") light.kind = LightKind::kDirectional;
+  if (from.type == "spot") light.kind = LightKind::kSpot;
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, from.color.size()); ++i) {
+    light.intensity[static_cast<int>(i)] = static_cast<float>(from.color[i]);
+  }
+  light.intensity *= static_cast<float>(from.intensity);
+  light.range = static_cast<float>(from.range);
+  light.inner_cone_rad = static_cast<float>(from.spot.innerConeAngle);
+  light.outer_cone_rad = static_cast<float>(from.spot.outerConeAngle);
+  return light;
+}
+
+/// Index of the light at a node, -1: none.
+int light_of(const tinygltf::Node& node) {
+  const auto found = node.extensions.find("KHR_lights_punctual");
+  if (found == node.extensions.end() || !found->second.Has("light") ||
+      !found->second.Get("light").IsInt()) {
+    return -1;
+  }
+  return found->second.Get("light").GetNumberAsInt();
+}
+
+}  // namespace
+
+void import_cameras_and_lights(const tinygltf::Model& file, Model& model) {
+  for (const int index : model.order) {
+    if (static_cast<std::size_t>(index) >= file.nodes.size()) continue;  // of an instance
+    const auto& node = file.nodes[static_cast<std::size_t>(index)];
+    if (node.camera >= 0) {
+      check_index(node.camera, file.cameras.size(), "camera");
+      model.cameras.push_back(
+          convert_camera(file.cameras[static_cast<std::size_t>(node.camera)], index));
+    }
+    if (const int light = light_of(node); light >= 0) {
+      check_index(light, file.lights.size(), "light");
+      model.lights.push_back(convert_light(file.lights[static_cast<std::size_t>(light)], index));
+    }
   }
 }
 

@@ -7,6 +7,8 @@
 #include <numeric>
 
 #include "render/gltf/accessors.h"
+#include "render/gltf/materials.h"
+#include "render/gltf/simplify.h"
 #include "render/gltf/tangents.h"
 
 namespace planecast::render {
@@ -36,12 +38,43 @@ std::vector<std::uint32_t> triangle_list(const std::vector<std::uint32_t>& in, i
   return out;
 }
 
+/// Strips and loops become pairs.
+std::vector<std::uint32_t> line_list(const std::vector<std::uint32_t>& in, int mode) {
+  if (mode == TINYGLTF_MODE_LINE) {
+    return {in.begin(), in.begin() + static_cast<std::ptrdiff_t>(in.size() / 2 * 2)};
+  }
+  std::vector<std::uint32_t> out;
+  for (std::size_t i = 0; i + 1 < in.size(); ++i) out.insert(out.end(), {in[i], in[i + 1]});
+  if (mode == TINYGLTF_MODE_LINE_LOOP && in.size() > 2) {
+    out.insert(out.end(), {in.back(), in.front()});
+  }
+  return out;
+}
+
+Topology topology_of(int mode) {
+  if (mode == TINYGLTF_MODE_POINTS) return Topology::kPoints;
+  return mode < TINYGLTF_MODE_TRIANGLES ? Topology::kLines : Topology::kTriangles;
+}
+
+std::vector<std::uint32_t> plain_list(const std::vector<std::uint32_t>& in, int mode) {
+  switch (topology_of(mode)) {
+    case Topology::kPoints:
+      return in;
+    case Topology::kLines:
+      return line_list(in, mode);
+    case Topology::kTriangles:
+      break;
+  }
+  return triangle_list(in, mode);
+}
+
 class PrimitiveImporter {
  public:
   PrimitiveImporter(const tinygltf::Model& file, const tinygltf::Primitive& from)
       : reader_(file), from_(from) {}
 
-  Primitive run(const std::vector<Material>& materials, std::vector<std::string>& warnings) {
+  Primitive run(const std::vector<Material>& materials, int variant,
+                std::vector<std::string>& warnings) {
     read_positions();
     read_indices();
     read_normals_and_tangents();
@@ -49,11 +82,14 @@ class PrimitiveImporter {
     read_skinning(warnings);
     for (const Attributes& target : from_.targets) read_target(target);
     const int last = static_cast<int>(materials.size()) - 1;
-    if (from_.material >= last) throw ImportError("a mesh uses a material that does not exist");
-    out_.material = from_.material < 0 ? last : from_.material;
-    if (!has_normals_) add_flat_normals(out_);
-    const TextureSlot& normal_map = materials[static_cast<std::size_t>(out_.material)].normal_map;
-    if (normal_map.texture >= 0 && !has_tangents_) add_tangents(out_, normal_map.uv_set);
+    const int material = material_of(from_, variant);
+    if (material >= last) throw ImportError("a mesh uses a material that does not exist");
+    out_.material = material < 0 ? last : material;
+    if (out_.topology == Topology::kTriangles) {
+      finish_triangles(materials[static_cast<std::size_t>(out_.material)]);
+    } else {
+      out_.unlit = !has_normals_;
+    }
     measure();
     return std::move(out_);
   }
@@ -91,7 +127,8 @@ class PrimitiveImporter {
       throw ImportError("indices point beyond the vertices");
     }
     const int mode = from_.mode < 0 ? TINYGLTF_MODE_TRIANGLES : from_.mode;
-    out_.indices = triangle_list(indices, mode);
+    out_.topology = topology_of(mode);
+    out_.indices = plain_list(indices, mode);
   }
 
   void read_normals_and_tangents() {
@@ -181,6 +218,13 @@ class PrimitiveImporter {
                             differences(target, "TANGENT")});
   }
 
+  void finish_triangles(const Material& material) {
+    if (!has_normals_) add_flat_normals(out_);
+    const TextureSlot& map =
+        material.normal_map.texture >= 0 ? material.normal_map : material.clearcoat_normal_map;
+    if (map.texture >= 0 && !has_tangents_) add_tangents(out_, map.uv_set);
+  }
+
   void measure() {
     if (out_.shape.empty()) return;
     out_.box = {out_.shape.front().position, out_.shape.front().position};
@@ -201,19 +245,16 @@ class PrimitiveImporter {
 
 std::optional<Primitive> import_primitive(const tinygltf::Model& file,
                                           const tinygltf::Primitive& from,
-                                          const std::vector<Material>& materials,
+                                          const std::vector<Material>& materials, int variant,
                                           std::vector<std::string>& warnings) {
-  if (from.mode >= 0 && from.mode < TINYGLTF_MODE_TRIANGLES) {
-    warnings.emplace_back("points and lines are not drawn");
-    return std::nullopt;
-  }
   if (from.mode > TINYGLTF_MODE_TRIANGLE_FAN) throw ImportError("a mesh has an unknown mode");
   if (attribute(from.attributes, "POSITION") < 0) {
     warnings.emplace_back("a mesh without positions is not drawn");
     return std::nullopt;
   }
-  Primitive primitive = PrimitiveImporter(file, from).run(materials, warnings);
+  Primitive primitive = PrimitiveImporter(file, from).run(materials, variant, warnings);
   if (primitive.indices.empty()) return std::nullopt;
+  add_detail_levels(primitive);
   return primitive;
 }
 

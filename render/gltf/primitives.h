@@ -9,13 +9,14 @@
 
 namespace planecast::render {
 
-/// One primitive as indexed triangles with normals, and tangents where its material has a normal
-/// map. Points, lines and primitives without positions or triangles: nothing, with a warning.
+/// One primitive as a list of triangles, lines or points; triangles get normals, and tangents where
+/// the material (of the variant, -1: none) has a normal map. Nothing for primitives without
+/// positions (with a warning) or without a whole triangle, line or point.
 /// Throws ImportError for a file that contradicts itself. `materials` ends with the default
 /// material.
 std::optional<Primitive> import_primitive(const tinygltf::Model& file,
                                           const tinygltf::Primitive& from,
-                                          const std::vector<Material>& materials,
+                                          const std::vector<Material>& materials, int variant,
                                           std::vector<std::string>& warnings);
 
 }  // namespace planecast::render

@@ -150,8 +150,9 @@ void CatcherPass::make_contact(ShaderLibrary& shaders, const CatcherInput& input
   gl_->Enable(GL_BLEND);
   gl_->BlendEquation(GL_MAX);
   gl_->BlendFunc(GL_ONE, GL_ONE);
-  models_->draw_heights(*input.items, clip_from_world_over(plan.frame, plan.contact_region),
-                        plan.frame.equation());
+  models_->draw_heights(
+      *input.items, clip_from_world_over(plan.frame, plan.contact_region), plan.frame.equation(),
+      input.detail_texels * plan.contact_region.size().x / static_cast<float>(side));
   gl_->BlendEquation(GL_FUNC_ADD);
 
   const Program& program = shaders.get("full_screen.vert", "contact.frag");

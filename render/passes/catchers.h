@@ -21,6 +21,7 @@ struct CatcherInput {
   const std::vector<glm::vec3>* caster_points = nullptr;  ///< corners of the items' boxes, world
   const ShadowMap* shadow = nullptr;                      ///< null: no sun shadow
   std::uint64_t casters = 0;                              ///< changes when casters or the sun do
+  float detail_texels = 0.0F;  ///< how far simplified meshes may be off in the maps
 };
 
 /// Shadows on the planes of the recorded world. Two parts, each made once for casters and light

@@ -12,7 +12,10 @@ namespace {
 /// Blended surfaces have no depth or shadow of their own below half opacity.
 constexpr float kBlendCutoff = 0.5F;
 
+/// Where the passes that need no colour look at the texture's alpha.
 bool cut_out(const Material& material) { return material.alpha_mode != AlphaMode::kOpaque; }
+
+bool is_surface(const DrawItem& item) { return item.mode == GL_TRIANGLES; }
 
 /// Inverse transpose up to a factor, defined for singular matrices too.
 glm::mat3 normal_matrix(const glm::mat4& matrix) {
@@ -26,25 +29,70 @@ float view_depth(const DrawItem& item, const Camera& camera) {
   return (camera.camera_from_world * item.world_from_shape * center).z;
 }
 
-std::vector<std::string> shading_variant(const Material& material, const ShadingInput& input) {
+/// How far a simplified item may be off in the world to stay within `pixels` on the screen, at its
+/// nearest point.
+float allowed_error_m(const DrawItem& item, const Camera& camera, float pixels) {
+  float nearest = camera.far_plane;
+  for (const glm::vec3& corner : box_corners(item.box, item.world_from_shape)) {
+    nearest = std::min(nearest, (camera.camera_from_world * glm::vec4(corner, 1.0F)).z);
+  }
+  const float focal = std::max(std::abs(camera.fx), std::abs(camera.fy));
+  return pixels * std::max(nearest, camera.near_plane) / focal;
+}
+
+bool has(const TextureSlot& slot) { return slot.texture >= 0; }
+
+void add_layer_variants(const Material& material, std::vector<std::string>& defines) {
+  const auto when = [&defines](bool condition, const char* name) {
+    if (condition) defines.emplace_back(name);
+    return condition;
+  };
+  const bool plain = material.ior == 1.5F && material.specular == 1.0F &&
+                     material.specular_color == glm::vec3(1.0F) && !has(material.specular_map) &&
+                     !has(material.specular_color_map);
+  if (when(!plain, "SPECULAR")) {
+    when(has(material.specular_map), "SPECULAR_MAP");
+    when(has(material.specular_color_map), "SPECULAR_COLOR_MAP");
+  }
+  if (when(material.transmission > 0.0F, "TRANSMISSION")) {
+    when(has(material.transmission_map), "TRANSMISSION_MAP");
+  }
+  if (when(material.clearcoat > 0.0F, "CLEARCOAT")) {
+    when(has(material.clearcoat_map), "CLEARCOAT_MAP");
+    when(has(material.clearcoat_roughness_map), "CLEARCOAT_ROUGHNESS_MAP");
+    when(has(material.clearcoat_normal_map), "CLEARCOAT_NORMAL_MAP");
+  }
+  if (when(material.sheen_color != glm::vec3(0.0F), "SHEEN")) {
+    when(has(material.sheen_color_map), "SHEEN_COLOR_MAP");
+    when(has(material.sheen_roughness_map), "SHEEN_ROUGHNESS_MAP");
+  }
+}
+
+std::vector<std::string> shading_variant(const DrawItem& item, const ShadingInput& input,
+                                         bool lamps) {
+  const Material& material = *item.material;
   std::vector<std::string> defines;
   const auto when = [&defines](bool condition, const char* name) {
     if (condition) defines.emplace_back(name);
   };
   const bool sun = input.light->sun.radiance != glm::vec3(0.0F);
-  when(material.unlit, "UNLIT");
-  when(material.base_color_map.texture >= 0, "BASE_COLOR_MAP");
+  when(has(material.base_color_map), "BASE_COLOR_MAP");
   when(material.alpha_mode == AlphaMode::kMask, "ALPHA_MASK");
   when(material.alpha_mode == AlphaMode::kMask && input.multisampled, "SAMPLE_COVERAGE");
   when(material.alpha_mode == AlphaMode::kBlend, "ALPHA_BLEND");
   when(input.occluder_depth != 0, "OCCLUDER_DEPTH");
-  if (material.unlit) return defines;
-  when(material.metallic_roughness_map.texture >= 0, "METALLIC_ROUGHNESS_MAP");
-  when(material.normal_map.texture >= 0, "NORMAL_MAP");
-  when(material.occlusion_map.texture >= 0, "OCCLUSION_MAP");
-  when(material.emissive_map.texture >= 0, "EMISSIVE_MAP");
+  if (material.unlit || item.unlit) {
+    defines.emplace_back("UNLIT");
+    return defines;
+  }
+  when(has(material.metallic_roughness_map), "METALLIC_ROUGHNESS_MAP");
+  when(has(material.normal_map), "NORMAL_MAP");
+  when(has(material.occlusion_map), "OCCLUSION_MAP");
+  when(has(material.emissive_map), "EMISSIVE_MAP");
   when(sun, "SUN");
   when(sun && input.shadow != nullptr, "SHADOWS");
+  when(lamps, "LAMPS");
+  add_layer_variants(material, defines);
   return defines;
 }
 
@@ -68,9 +116,10 @@ void ModelPasses::set_cut_out(const DrawItem& item, const Program& program) cons
   bind_map(item, program, material.base_color_map, true, kUnitBaseColor, "base_color");
 }
 
-void ModelPasses::draw_depth(const std::vector<DrawItem>& items,
-                             const glm::mat4& clip_from_world) const {
+void ModelPasses::draw_depth(const std::vector<DrawItem>& items, const glm::mat4& clip_from_world,
+                             float error_m) const {
   for (const DrawItem& item : items) {
+    if (!is_surface(item)) continue;
     std::vector<std::string> defines;
     if (cut_out(*item.material)) defines.emplace_back("ALPHA_MASK");
     if (item.material->base_color_map.texture >= 0) defines.emplace_back("BASE_COLOR_MAP");
@@ -78,7 +127,7 @@ void ModelPasses::draw_depth(const std::vector<DrawItem>& items,
     program.use();
     program.set("u_clip_from_model", clip_from_world * item.world_from_shape);
     if (cut_out(*item.material)) set_cut_out(item, program);
-    item.draw(*gl_);
+    item.draw(*gl_, error_m);
   }
 }
 
@@ -87,7 +136,7 @@ void ModelPasses::draw_color(const std::vector<DrawItem>& items, const ShadingIn
   gl_->DepthMask(GL_TRUE);
   std::vector<const DrawItem*> blended;
   for (const DrawItem& item : items) {
-    if (item.material->alpha_mode == AlphaMode::kBlend) {
+    if (item.material->see_through()) {
       blended.push_back(&item);
     } else {
       draw_shaded(item, input);
@@ -118,8 +167,8 @@ void ModelPasses::draw_color(const std::vector<DrawItem>& items, const ShadingIn
 void ModelPasses::draw_shaded(const DrawItem& item, const ShadingInput& input) const {
   const Material& material = *item.material;
   const Camera& camera = *input.camera;
-  const Program& program =
-      shaders_->get("model.vert", "model.frag", shading_variant(material, input));
+  const Program& program = shaders_->get("model.vert", "model.frag",
+                                         shading_variant(item, input, !models_->lamps().empty()));
   program.use();
   program.set("u_clip_from_world", clip_from_camera(camera) * camera.camera_from_world);
   program.set("u_world_from_shape", item.world_from_shape);
@@ -133,27 +182,10 @@ void ModelPasses::draw_shaded(const DrawItem& item, const ShadingInput& input) c
     program.set("u_occluder_depth", static_cast<int>(kUnitOccluderDepth));
     program.set("u_occluder_tolerance", input.occluder_tolerance);
   }
-  if (!material.unlit) {
-    const Sun& sun = input.light->sun;
-    program.set("u_metallic", material.metallic);
-    program.set("u_roughness", material.roughness);
-    program.set("u_emissive", material.emissive);
-    program.set("u_normal_scale", material.normal_scale);
-    program.set("u_occlusion_strength", material.occlusion_strength);
-    bind_map(item, program, material.metallic_roughness_map, false, kUnitMetallicRoughness,
-             "metallic_roughness");
-    bind_map(item, program, material.normal_map, false, kUnitNormal, "normal");
-    bind_map(item, program, material.occlusion_map, false, kUnitOcclusion, "occlusion");
-    bind_map(item, program, material.emissive_map, true, kUnitEmissive, "emissive_map");
-    program.set("u_ambient_sh", std::span<const glm::vec3>(input.light->ambient_sh));
-    program.set("u_eye", camera_position(camera));
-    program.set("u_to_light", glm::normalize(sun.direction_to_light));
-    program.set("u_sun_radiance", sun.radiance);
-    if (input.shadow != nullptr) input.shadow->bind(program, sun);
-  }
+  if (!material.unlit && !item.unlit) set_lit(item, program, input);
   gl_->FrontFace(front_face(camera, item.world_from_shape));
   // Blended double-sided items are culled side by side by the caller.
-  if (material.alpha_mode != AlphaMode::kBlend || !material.double_sided) {
+  if (!material.see_through() || !material.double_sided) {
     if (material.double_sided) {
       gl_->Disable(GL_CULL_FACE);
     } else {
@@ -161,7 +193,79 @@ void ModelPasses::draw_shaded(const DrawItem& item, const ShadingInput& input) c
       gl_->CullFace(GL_BACK);
     }
   }
-  item.draw(*gl_);
+  item.draw(*gl_, allowed_error_m(item, camera, input.detail_px));
+}
+
+void ModelPasses::set_lit(const DrawItem& item, const Program& program,
+                          const ShadingInput& input) const {
+  const Material& material = *item.material;
+  const Sun& sun = input.light->sun;
+  program.set("u_metallic", material.metallic);
+  program.set("u_roughness", material.roughness);
+  program.set("u_emissive", material.emissive);
+  program.set("u_normal_scale", material.normal_scale);
+  program.set("u_occlusion_strength", material.occlusion_strength);
+  bind_map(item, program, material.metallic_roughness_map, false, kUnitMetallicRoughness,
+           "metallic_roughness");
+  bind_map(item, program, material.normal_map, false, kUnitNormal, "normal");
+  bind_map(item, program, material.occlusion_map, false, kUnitOcclusion, "occlusion");
+  bind_map(item, program, material.emissive_map, true, kUnitEmissive, "emissive_map");
+  program.set("u_ambient_sh", std::span<const glm::vec3>(input.light->ambient_sh));
+  program.set("u_eye", camera_position(*input.camera));
+  program.set("u_to_light", glm::normalize(sun.direction_to_light));
+  program.set("u_sun_radiance", sun.radiance);
+  if (input.shadow != nullptr) input.shadow->bind(program, sun);
+  if (!models_->lamps().empty()) set_lamps(program);
+  set_layers(item, program);
+}
+
+void ModelPasses::set_layers(const DrawItem& item, const Program& program) const {
+  const Material& material = *item.material;
+  // (ior - 1)^2 / (ior + 1)^2; an ior of 0 means a reflectance of 1 (KHR_materials_ior).
+  const float ratio = (material.ior - 1.0F) / (material.ior + 1.0F);
+  program.set("u_dielectric_f0", ratio * ratio);
+  program.set("u_specular", material.specular);
+  program.set("u_specular_color", material.specular_color);
+  bind_map(item, program, material.specular_map, false, kUnitSpecular, "specular_map");
+  bind_map(item, program, material.specular_color_map, true, kUnitSpecularColor,
+           "specular_color_map");
+  program.set("u_transmission", material.transmission);
+  bind_map(item, program, material.transmission_map, false, kUnitTransmission, "transmission_map");
+  if (material.clearcoat > 0.0F) {
+    program.set("u_clearcoat", material.clearcoat);
+    program.set("u_clearcoat_roughness", material.clearcoat_roughness);
+    program.set("u_clearcoat_normal_scale", material.clearcoat_normal_scale);
+    bind_map(item, program, material.clearcoat_map, false, kUnitClearcoat, "clearcoat_map");
+    bind_map(item, program, material.clearcoat_roughness_map, false, kUnitClearcoatRoughness,
+             "clearcoat_roughness_map");
+    bind_map(item, program, material.clearcoat_normal_map, false, kUnitClearcoatNormal,
+             "clearcoat_normal_map");
+  }
+  if (material.sheen_color != glm::vec3(0.0F)) {
+    program.set("u_sheen_color", material.sheen_color);
+    program.set("u_sheen_roughness", material.sheen_roughness);
+    bind_map(item, program, material.sheen_color_map, true, kUnitSheenColor, "sheen_color_map");
+    bind_map(item, program, material.sheen_roughness_map, false, kUnitSheenRoughness,
+             "sheen_roughness_map");
+  }
+}
+
+void ModelPasses::set_lamps(const Program& program) const {
+  std::vector<glm::vec4> positions;
+  std::vector<glm::vec4> intensities;
+  std::vector<glm::vec4> axes;
+  std::vector<glm::vec4> inner;
+  for (const Lamp& lamp : models_->lamps()) {
+    positions.push_back(lamp.position);
+    intensities.push_back(lamp.intensity);
+    axes.push_back(lamp.axis);
+    inner.emplace_back(lamp.inner_cosine);
+  }
+  program.set("u_lamp_count", static_cast<int>(positions.size()));
+  program.set("u_lamp_position", std::span<const glm::vec4>(positions));
+  program.set("u_lamp_intensity", std::span<const glm::vec4>(intensities));
+  program.set("u_lamp_axis", std::span<const glm::vec4>(axes));
+  program.set("u_lamp_inner", std::span<const glm::vec4>(inner));
 }
 
 void ModelPasses::draw_geometry(const std::vector<DrawItem>& items,
@@ -190,20 +294,21 @@ void ModelPasses::draw_geometry(const std::vector<DrawItem>& items,
       gl_->Enable(GL_CULL_FACE);
       gl_->CullFace(GL_BACK);
     }
-    item.draw(*gl_);
+    item.draw(*gl_, allowed_error_m(item, camera, input.detail_px));
   }
   gl_->Disable(GL_CULL_FACE);
 }
 
 void ModelPasses::draw_heights(const std::vector<DrawItem>& items, const glm::mat4& clip_from_world,
-                               const glm::vec4& plane) const {
+                               const glm::vec4& plane, float error_m) const {
   const Program& program = shaders_->get("heights.vert", "heights.frag");
   program.use();
   program.set("u_clip_from_world", clip_from_world);
   program.set("u_plane", plane);
   for (const DrawItem& item : items) {
+    if (!is_surface(item)) continue;
     program.set("u_world_from_shape", item.world_from_shape);
-    item.draw(*gl_);
+    item.draw(*gl_, error_m);
   }
 }
 

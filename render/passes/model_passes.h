@@ -17,6 +17,7 @@ struct ShadingInput {
   float occluder_tolerance = 0.02F;
   float exposure = 1.0F;
   bool multisampled = true;
+  float detail_px = 0.0F;  ///< how far simplified meshes may be off on the screen
 };
 
 /// Draws posed models; one object for the passes they appear in.
@@ -25,8 +26,10 @@ class ModelPasses {
   ModelPasses(const Gl& gl, ShaderLibrary& shaders, const ModelSet& models)
       : gl_(&gl), shaders_(&shaders), models_(&models) {}
 
-  /// Depth alone, seen along `clip_from_world`, into whatever target is bound.
-  void draw_depth(const std::vector<DrawItem>& items, const glm::mat4& clip_from_world) const;
+  /// Depth alone, seen along `clip_from_world`, into whatever target is bound; meshes may be off by
+  /// `error_m`.
+  void draw_depth(const std::vector<DrawItem>& items, const glm::mat4& clip_from_world,
+                  float error_m) const;
   /// Metallic-roughness shading, premultiplied and encoded: opaque and masked items first, then
   /// blended ones from back to front.
   void draw_color(const std::vector<DrawItem>& items, const ShadingInput& input) const;
@@ -34,10 +37,13 @@ class ModelPasses {
   void draw_geometry(const std::vector<DrawItem>& items, const ShadingInput& input) const;
   /// Highest top and lowest underside above a plane, seen along its normal; see heights.frag.
   void draw_heights(const std::vector<DrawItem>& items, const glm::mat4& clip_from_world,
-                    const glm::vec4& plane) const;
+                    const glm::vec4& plane, float error_m) const;
 
  private:
   void draw_shaded(const DrawItem& item, const ShadingInput& input) const;
+  void set_lit(const DrawItem& item, const Program& program, const ShadingInput& input) const;
+  void set_layers(const DrawItem& item, const Program& program) const;
+  void set_lamps(const Program& program) const;
   void set_cut_out(const DrawItem& item, const Program& program) const;
   void bind_map(const DrawItem& item, const Program& program, const TextureSlot& slot, bool srgb,
                 unsigned unit, const char* name) const;

@@ -1,5 +1,6 @@
 #include "render/passes/models.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "render/gl/image_texture.h"
@@ -19,6 +20,29 @@ Box shape_box(const std::vector<ShapeVertex>& shape) {
   return box;
 }
 
+GLenum draw_mode(Topology topology) {
+  switch (topology) {
+    case Topology::kPoints:
+      return GL_POINTS;
+    case Topology::kLines:
+      return GL_LINES;
+    case Topology::kTriangles:
+      break;
+  }
+  return GL_TRIANGLES;
+}
+
+/// The full mesh and its coarser versions in one index buffer.
+MeshBuffers upload_primitive(const Gl& gl, const Primitive& primitive) {
+  std::vector<std::uint32_t> indices = primitive.indices;
+  std::vector<IndexRange> levels = {{0, static_cast<GLsizei>(indices.size()), 0.0F}};
+  for (const DetailLevel& level : primitive.details) {
+    levels.push_back({indices.size(), static_cast<GLsizei>(level.indices.size()), level.error});
+    indices.insert(indices.end(), level.indices.begin(), level.indices.end());
+  }
+  return upload_levels(gl, primitive.shape, primitive.surface, indices, std::move(levels));
+}
+
 bool finite(const glm::mat4& matrix) {
   float sum = 0.0F;
   for (int column = 0; column < 4; ++column) sum += glm::dot(matrix[column], glm::vec4(1.0F));
@@ -27,9 +51,16 @@ bool finite(const glm::mat4& matrix) {
 
 }  // namespace
 
-void DrawItem::draw(const Gl& gl) const {
+void DrawItem::draw(const Gl& gl, float error_m) const {
+  const glm::mat3 linear(world_from_shape);
+  const float scale =
+      std::max({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2]), 1e-20F});
+  std::size_t chosen = 0;
+  while (chosen + 1 < levels->size() && (*levels)[chosen + 1].error * scale <= error_m) ++chosen;
+  const IndexRange& range = (*levels)[chosen];
   gl.BindVertexArray(vertex_array);
-  gl.DrawElements(GL_TRIANGLES, index_count, GL_UNSIGNED_INT, nullptr);
+  gl.DrawElements(mode, range.count, GL_UNSIGNED_INT,
+                  reinterpret_cast<const void*>(range.first * sizeof(std::uint32_t)));
 }
 
 const std::vector<DrawItem>& ModelSet::pose(const std::vector<Instance>& instances) {
@@ -38,6 +69,7 @@ const std::vector<DrawItem>& ModelSet::pose(const std::vector<Instance>& instanc
   // Deformed shapes refer to meshes by address, and a new model may get the address of a gone one.
   if (gone > 0) deformed_.clear();
   items_.clear();
+  lamps_.clear();
   deformed_used_ = 0;
   ContentHash signature;
   for (const Instance& instance : instances) {
@@ -61,8 +93,7 @@ GpuModel& ModelSet::upload(const std::shared_ptr<const Model>& model) {
   for (const Mesh& mesh : model->meshes) {
     auto& primitives = gpu.meshes.emplace_back();
     for (const Primitive& primitive : mesh.primitives) {
-      primitives.push_back(
-          upload_mesh(*gl_, primitive.shape, primitive.surface, primitive.indices));
+      primitives.push_back(upload_primitive(*gl_, primitive));
     }
   }
   return gpu;
@@ -72,6 +103,7 @@ void ModelSet::add_instance(const Instance& instance) {
   const Model& model = *instance.model;
   GpuModel& gpu = upload(instance.model);
   const ModelPose pose = evaluate_pose(model, instance.animation, instance.animation_time_s);
+  add_lamps(model, instance.world_from_model, pose);
   for (const int index : model.order) {
     const auto node_index = static_cast<std::size_t>(index);
     const Node& node = model.nodes[node_index];
@@ -87,7 +119,9 @@ void ModelSet::add_instance(const Instance& instance) {
       const MeshBuffers& mesh = gpu.meshes[mesh_index][p];
       const bool skinned = !joints.empty() && !primitive.joints.empty();
       DrawItem item;
-      item.index_count = mesh.index_count;
+      item.mode = draw_mode(primitive.topology);
+      item.unlit = primitive.unlit;
+      item.levels = &mesh.levels;
       item.material = &model.materials[static_cast<std::size_t>(primitive.material)];
       item.model = &model;
       item.gpu = &gpu;
@@ -102,6 +136,28 @@ void ModelSet::add_instance(const Instance& instance) {
         items_.push_back(item);
       }
     }
+  }
+}
+
+void ModelSet::add_lamps(const Model& model, const glm::mat4& world_from_model,
+                         const ModelPose& pose) {
+  constexpr float kInversePi = 0.31830989F;
+  for (const ModelLight& light : model.lights) {
+    if (lamps_.size() == kMostLamps) return;
+    const glm::mat4 world_from_light =
+        world_from_model * pose.model_from_node[static_cast<std::size_t>(light.node)];
+    const glm::vec3 shines = -glm::vec3(world_from_light[2]);
+    if (!finite(world_from_light) || glm::length(shines) < 1e-12F) continue;
+    Lamp lamp;
+    const glm::vec3 axis = glm::normalize(shines);
+    const bool directional = light.kind == LightKind::kDirectional;
+    lamp.position = directional ? glm::vec4(-axis, 0.0F) : world_from_light[3];
+    lamp.intensity = glm::vec4(light.intensity * kInversePi, light.range);
+    // A point light is a cone wider than everything.
+    const bool spot = light.kind == LightKind::kSpot;
+    lamp.axis = glm::vec4(axis, spot ? std::cos(light.outer_cone_rad) : -2.0F);
+    lamp.inner_cosine = spot ? std::cos(light.inner_cone_rad) : -1.5F;
+    lamps_.push_back(lamp);
   }
 }
 
@@ -135,6 +191,7 @@ GLuint ModelSet::texture(const DrawItem& item, const TextureSlot& slot, bool srg
 
 void ModelSet::clear() {
   items_.clear();
+  lamps_.clear();
   deformed_.clear();
   models_.clear();
 }

@@ -8,6 +8,7 @@
 
 #include "render/gl/mesh_buffers.h"
 #include "render/gl/program.h"
+#include "render/gltf/animate.h"
 #include "render/gltf/model.h"
 #include "render/scene.h"
 
@@ -25,15 +26,27 @@ struct GpuModel {
 /// One primitive of one instance, posed, ready for any pass.
 struct DrawItem {
   GLuint vertex_array = 0;
-  GLsizei index_count = 0;
+  GLenum mode = GL_TRIANGLES;
+  bool unlit = false;
+  const std::vector<IndexRange>* levels = nullptr;
   const Material* material = nullptr;
   const Model* model = nullptr;
   GpuModel* gpu = nullptr;
   glm::mat4 world_from_shape = glm::mat4(1.0F);
   Box box;  ///< of the shape, in its own frame
 
-  void draw(const Gl& gl) const;
+  /// The coarsest level that is off by no more than `error_m` in the world.
+  void draw(const Gl& gl, float error_m) const;
 };
+
+/// A light of a posed model in the world; see lamps.glsl.
+struct Lamp {
+  glm::vec4 position{};   ///< w = 1: a place; 0: the direction towards the light
+  glm::vec4 intensity{};  ///< linear RGB / pi; a = range, 0 unlimited
+  glm::vec4 axis{};       ///< direction it shines; w = cosine of the outer cone
+  float inner_cosine = 0.0F;
+};
+inline constexpr std::size_t kMostLamps = 8;
 
 /// Uploads models once, poses instances, deforms what is skinned or morphed.
 class ModelSet {
@@ -43,6 +56,8 @@ class ModelSet {
   /// The items are valid until the next call. Instances without a model or
   /// with a pose that is not a number are passed over.
   const std::vector<DrawItem>& pose(const std::vector<Instance>& instances);
+  /// The lights of the posed models, at most kMostLamps.
+  const std::vector<Lamp>& lamps() const { return lamps_; }
   /// The texture of a slot that has one.
   GLuint texture(const DrawItem& item, const TextureSlot& slot, bool srgb) const;
   /// Changes when what pose() was last given does.
@@ -59,6 +74,7 @@ class ModelSet {
 
   GpuModel& upload(const std::shared_ptr<const Model>& model);
   void add_instance(const Instance& instance);
+  void add_lamps(const Model& model, const glm::mat4& world_from_model, const ModelPose& pose);
   void add_deformed(DrawItem item, const MeshBuffers& mesh, const std::vector<ShapeVertex>& shape);
 
   const Gl* gl_;
@@ -66,6 +82,7 @@ class ModelSet {
   std::vector<Deformed> deformed_;
   std::size_t deformed_used_ = 0;
   std::vector<DrawItem> items_;
+  std::vector<Lamp> lamps_;
   std::uint64_t uploads_ = 0;
   std::uint64_t signature_ = 0;
 };

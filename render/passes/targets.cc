@@ -7,11 +7,11 @@ namespace {
 
 constexpr GLenum kDepthFormat = GL_DEPTH32F_STENCIL8;
 
-/// Limits drawing, clearing and blitting to `rect` of a target.
-void set_window(const Gl& gl, int width, int height, const Layer::Rect& rect) {
-  gl.Viewport(0, 0, width, height);
+/// The picture lies under the target so that the window's corner comes to its first pixel.
+void set_window(const Gl& gl, const Window& window) {
+  gl.Viewport(-window.rect.x, -window.rect.y, window.picture_width, window.picture_height);
   gl.Enable(GL_SCISSOR_TEST);
-  gl.Scissor(rect.x, rect.y, rect.width, rect.height);
+  gl.Scissor(0, 0, window.rect.width, window.rect.height);
 }
 
 template <typename T>
@@ -22,10 +22,21 @@ void read_rect(const Gl& gl, const Layer::Rect& rect, GLenum format, GLenum type
       (static_cast<std::size_t>(rect.y) * static_cast<std::size_t>(out.width) +
        static_cast<std::size_t>(rect.x)) *
       static_cast<std::size_t>(out.channels);
-  gl.ReadPixels(rect.x, rect.y, rect.width, rect.height, format, type, out.pixels.data() + first);
+  gl.ReadPixels(0, 0, rect.width, rect.height, format, type, out.pixels.data() + first);
 }
 
 }  // namespace
+
+bool fits(int width, int height, const Layer::Rect& rect) {
+  constexpr int kMostWaste = 2;
+  const int needed = whole_tiles(rect.width) * whole_tiles(rect.height);
+  return width >= rect.width && height >= rect.height && width * height <= kMostWaste * needed;
+}
+
+int whole_tiles(int side) {
+  constexpr int kTile = 64;  // of llvmpipe
+  return (side + kTile - 1) / kTile * kTile;
+}
 
 ColorTarget::ColorTarget(const Gl& gl, int width, int height, int samples)
     : gl_(&gl),
@@ -49,23 +60,23 @@ ColorTarget::ColorTarget(const Gl& gl, int width, int height, int samples)
   }
 }
 
-void ColorTarget::begin(const Layer::Rect& rect) const {
+void ColorTarget::begin(const Window& window) const {
   gl_->BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
-  set_window(*gl_, width_, height_, rect);
+  gl_->Disable(GL_SCISSOR_TEST);
   gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   gl_->DepthMask(GL_TRUE);
   const std::array<float, 4> transparent{};
   gl_->ClearNamedFramebufferfv(framebuffer_.id(), GL_COLOR, 0, transparent.data());
   gl_->ClearNamedFramebufferfi(framebuffer_.id(), GL_DEPTH_STENCIL, 0, 0.0F, 0);
+  set_window(*gl_, window);
 }
 
-void ColorTarget::resolve(const Layer::Rect& rect, ImageU8& out) const {
+void ColorTarget::resolve(const Window& window, ImageU8& out) const {
+  const Layer::Rect& rect = window.rect;
   const FramebufferHandle& source = samples_ > 1 ? resolved_ : framebuffer_;
   if (samples_ > 1) {
-    gl_->BlitNamedFramebuffer(framebuffer_.id(), resolved_.id(), rect.x, rect.y,
-                              rect.x + rect.width, rect.y + rect.height, rect.x, rect.y,
-                              rect.x + rect.width, rect.y + rect.height, GL_COLOR_BUFFER_BIT,
-                              GL_NEAREST);
+    gl_->BlitNamedFramebuffer(framebuffer_.id(), resolved_.id(), 0, 0, rect.width, rect.height, 0,
+                              0, rect.width, rect.height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
   }
   gl_->BindFramebuffer(GL_FRAMEBUFFER, source.id());
   read_rect(*gl_, rect, out.channels == 4 ? GL_RGBA : GL_RGB, GL_UNSIGNED_BYTE, out);
@@ -88,9 +99,9 @@ GeometryTarget::GeometryTarget(const Gl& gl, int width, int height)
   check_complete(gl, framebuffer_, "depth and labels");
 }
 
-void GeometryTarget::begin(const Layer::Rect& rect) const {
+void GeometryTarget::begin(const Window& window) const {
   gl_->BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
-  set_window(*gl_, width_, height_, rect);
+  gl_->Disable(GL_SCISSOR_TEST);
   gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   gl_->DepthMask(GL_TRUE);
   const std::array<float, 4> zero{};
@@ -98,18 +109,19 @@ void GeometryTarget::begin(const Layer::Rect& rect) const {
   gl_->ClearNamedFramebufferfv(framebuffer_.id(), GL_COLOR, 0, zero.data());
   gl_->ClearNamedFramebufferuiv(framebuffer_.id(), GL_COLOR, 1, none.data());
   gl_->ClearNamedFramebufferfi(framebuffer_.id(), GL_DEPTH_STENCIL, 0, 0.0F, 0);
+  set_window(*gl_, window);
 }
 
-void GeometryTarget::read_depth(const Layer::Rect& rect, ImageF& out) const {
+void GeometryTarget::read_depth(const Window& window, ImageF& out) const {
   gl_->BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
   gl_->NamedFramebufferReadBuffer(framebuffer_.id(), GL_COLOR_ATTACHMENT0);
-  read_rect(*gl_, rect, GL_RED, GL_FLOAT, out);
+  read_rect(*gl_, window.rect, GL_RED, GL_FLOAT, out);
 }
 
-void GeometryTarget::read_labels(const Layer::Rect& rect, Image<std::uint16_t>& out) const {
+void GeometryTarget::read_labels(const Window& window, Image<std::uint16_t>& out) const {
   gl_->BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
   gl_->NamedFramebufferReadBuffer(framebuffer_.id(), GL_COLOR_ATTACHMENT1);
-  read_rect(*gl_, rect, GL_RED_INTEGER, GL_UNSIGNED_SHORT, out);
+  read_rect(*gl_, window.rect, GL_RED_INTEGER, GL_UNSIGNED_SHORT, out);
 }
 
 }  // namespace planecast::render

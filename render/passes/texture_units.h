@@ -15,6 +15,14 @@ enum TextureUnit : unsigned {
   kUnitMask = 8,
   kUnitHeights = 9,
   kUnitContact = 10,
+  kUnitSpecular = 11,
+  kUnitSpecularColor = 12,
+  kUnitTransmission = 13,
+  kUnitClearcoat = 14,
+  kUnitClearcoatRoughness = 15,
+  kUnitClearcoatNormal = 16,
+  kUnitSheenColor = 17,
+  kUnitSheenRoughness = 18,
 };
 
 }  // namespace planecast::render

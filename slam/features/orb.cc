@@ -177,6 +177,8 @@ Features OrbExtractor::extract(const cv::Mat& grey, const Camera& camera, int li
   return features;
 }
 
+void OrbExtractor::set_image(const cv::Mat& grey) { impl_->build_pyramid(grey); }
+
 std::vector<int> OrbExtractor::append(const std::vector<Keypoint>& points, Features& features) {
   const ScaleLevels& levels = impl_->options.levels;
   std::vector<cv::KeyPoint> corners;

@@ -31,9 +31,11 @@ class OrbExtractor {
   /// The result has raw and undistorted pixels, no depth, no labels; its grid is built.
   Features extract(const cv::Mat& grey, const Camera& camera, int limit = 0);
 
+  /// Makes `grey` the image that append() describes points in, as extract() does.
+  void set_image(const cv::Mat& grey);
   /// Describes points found otherwise (raw pixel, undistorted pixel and octave are given) in the
-  /// image that was extracted last, and appends them to its `features`. Returns the index of each,
-  /// or -1 for one too near to the border. The grid has to be built again.
+  /// image that was set last, and appends them to its `features`. Returns the index of each, or -1
+  /// for one too near to the border. The grid has to be built again.
   std::vector<int> append(const std::vector<Keypoint>& points, Features& features);
 
  private:

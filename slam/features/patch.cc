@@ -135,6 +135,17 @@ std::optional<PatchTemplate> make_template(const cv::Mat& image, const Eigen::Ve
   return patch;
 }
 
+float correlate(const PatchTemplate& patch, const cv::Mat& image, const Eigen::Vector2f& centre) {
+  if (!holds_patch(image, centre)) return -1.0F;
+  PatchValues current;
+  sample_upright(image, centre, current);
+  // The template has zero mean, so that the image's mean drops out of the product.
+  const float sum = current.sum();
+  const float square = current.square().sum() - sum * sum / kPatchArea;
+  if (square < 1.0F) return -1.0F;
+  return (current * patch.value).sum() / (std::sqrt(square) * patch.norm);
+}
+
 std::optional<PatchAlignment> align_patch(const PatchTemplate& patch, const cv::Mat& image,
                                           const Eigen::Vector2f& start,
                                           const PatchAlignOptions& options) {

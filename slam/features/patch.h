@@ -28,6 +28,10 @@ struct PatchTemplate {
 std::optional<PatchTemplate> make_template(const cv::Mat& image, const Eigen::Vector2f& centre,
                                            const Eigen::Matrix2f& ref_from_patch);
 
+/// Zero-mean normalised correlation of the template with the image at a place, -1..1; -1 where it
+/// reaches beyond the image.
+float correlate(const PatchTemplate& patch, const cv::Mat& image, const Eigen::Vector2f& centre);
+
 struct PatchAlignOptions {
   int iterations = 10;
   float converged_px = 0.02F;

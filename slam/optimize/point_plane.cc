@@ -1,14 +1,18 @@
 #include <ceres/loss_function.h>
 #include <ceres/sphere_manifold.h>
 
+#include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "slam/geometry/depth_noise.h"
 #include "slam/optimize/bundle.h"
 #include "slam/optimize/bundle_problem.h"
+#include "slam/optimize/depth_plane_cost.h"
 
 namespace planecast::slam {
 namespace {
@@ -28,11 +32,34 @@ struct Ownership {
   int plane = 0;
 };
 
-/// The strong planes and which points own them.
+/// A depth point of a plane, in the camera of a living keyframe.
+struct DepthSight {
+  int pose = 0;
+  int plane = 0;
+  Eigen::Vector3d point_cam;
+};
+
+/// The strong planes, which points own them and which depth points support them. Without the
+/// latter a plane with few landmarks would leave what its depth says.
 struct PlaneProblem {
   std::vector<PlaneBlock> planes;
   std::vector<Ownership> owned;
+  std::vector<DepthSight> sights;
 };
+
+void collect_depth(const Map& map, const BundleProblem& bundle, const Plane& plane, int index,
+                   std::vector<DepthSight>& sights) {
+  for (std::size_t i = 0; i < plane.depth_anchors.size(); ++i) {
+    const DepthAnchor& anchor = plane.depth_anchors[i];
+    const KeyframeId living = map.living_ancestor(anchor.keyframe);
+    const auto found = std::lower_bound(bundle.keyframes.begin(), bundle.keyframes.end(), living);
+    if (found == bundle.keyframes.end() || *found != living) continue;
+    const Pose living_from_anchor =
+        map.keyframes.at(living).cam_from_world * map.keyframe_pose(anchor.keyframe).inverse();
+    sights.push_back({static_cast<int>(found - bundle.keyframes.begin()), index,
+                      living_from_anchor * anchor.point_cam.cast<double>()});
+  }
+}
 
 PlaneProblem collect_planes(const Map& map, const BundleProblem& bundle) {
   PlaneProblem problem;
@@ -41,6 +68,7 @@ PlaneProblem collect_planes(const Map& map, const BundleProblem& bundle) {
     if (plane.weak) continue;
     index[static_cast<std::size_t>(plane.id)] = static_cast<int>(problem.planes.size());
     problem.planes.push_back({plane.id, plane.normal.normalized(), plane.offset});
+    collect_depth(map, bundle, plane, static_cast<int>(problem.planes.size()) - 1, problem.sights);
   }
   for (std::size_t i = 0; i < bundle.landmarks.size(); ++i) {
     const PlaneId id = map.landmarks.at(bundle.landmarks[i]).plane;
@@ -102,6 +130,7 @@ std::unique_ptr<CentreDistanceCost> scale_cost(const BundleProblem& bundle, int&
 void solve_jointly(BundleProblem& bundle, PlaneProblem& planes, double plane_sigma,
                    int iterations) {
   PointPlaneCost cost(plane_sigma);
+  std::deque<DepthPlaneCost> depth_costs;
   ceres::CauchyLoss cauchy(1.0);
   ceres::SphereManifold<3> sphere;
   int scale_keyframe = kNone;
@@ -116,6 +145,16 @@ void solve_jointly(BundleProblem& bundle, PlaneProblem& planes, double plane_sig
       if (!problem.HasParameterBlock(point)) continue;
       problem.AddResidualBlock(&cost, &cauchy, point, plane.normal.data(), &plane.offset);
       used[static_cast<std::size_t>(owned.plane)] = 1;
+    }
+    for (const DepthSight& sight : planes.sights) {
+      PlaneBlock& plane = planes.planes[static_cast<std::size_t>(sight.plane)];
+      double* pose = bundle.poses[static_cast<std::size_t>(sight.pose)].data();
+      if (!problem.HasParameterBlock(pose)) continue;
+      depth_costs.emplace_back(sight.point_cam,
+                               std::max(plane_sigma, depth_sigma_m(sight.point_cam.z())));
+      problem.AddResidualBlock(&depth_costs.back(), &cauchy, pose, plane.normal.data(),
+                               &plane.offset);
+      used[static_cast<std::size_t>(sight.plane)] = 1;
     }
     for (std::size_t i = 0; i < used.size(); ++i) {
       if (!used[i]) continue;
@@ -136,6 +175,11 @@ void write_back_planes(const PlaneProblem& planes, const BundleProblem& bundle, 
     Plane& plane = map.planes.at(block.id);
     plane.refit(block.normal.normalized(), block.offset);
     plane.rms = plane_rms(planes, bundle, i);
+    for (std::size_t k = 0; k < plane.depth_points.size(); ++k) {
+      const DepthAnchor& anchor = plane.depth_anchors[k];
+      plane.depth_points[k] =
+          map.keyframe_pose(anchor.keyframe).inverse() * anchor.point_cam.cast<double>();
+    }
   }
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "slam/features/matching.h"
+#include "slam/features/place_points.h"
 
 namespace planecast::slam {
 namespace {
@@ -19,35 +20,25 @@ class Describer {
         cam_from_world_(cam_from_world),
         image_(image),
         options_(options),
-        features_(std::move(features)),
-        matches_(features_.keypoints.size(), kNone) {}
+        features_(std::move(features)) {}
 
   /// Features of the landmarks found by their looks.
   void place(const std::vector<PatchMatch>& patches, OrbExtractor& extractor) {
-    std::vector<Keypoint> missing;
-    std::vector<LandmarkId> missing_landmarks;
+    const ScaleLevels& levels = options_.localise.levels;
+    std::vector<FoundPoint> points;
     for (const PatchMatch& patch : patches) {
       const Landmark& landmark = map_.landmarks.at(patch.landmark);
-      const int octave = octave_of(landmark);
-      const int k = feature_of(landmark, patch, octave);
-      if (k != kNone) {
-        matches_[static_cast<std::size_t>(k)] = landmark.id;
-        move(k, patch);
-        continue;
-      }
-      Keypoint keypoint;
-      keypoint.raw = patch.raw;
-      keypoint.pixel = patch.pixel.cast<float>();
-      keypoint.octave = octave;
-      missing.push_back(keypoint);
-      missing_landmarks.push_back(landmark.id);
+      const double distance = (cam_from_world_ * landmark.position).norm();
+      points.push_back({patch.raw, patch.pixel, predict_octave(landmark, distance, levels),
+                        landmark.descriptor});
     }
-    const std::vector<int> added = extractor.append(missing, features_);
-    matches_.resize(features_.keypoints.size(), kNone);
-    for (std::size_t i = 0; i < added.size(); ++i) {
-      if (added[i] >= 0) matches_[static_cast<std::size_t>(added[i])] = missing_landmarks[i];
+    std::vector<char> taken(features_.keypoints.size(), 0);
+    const std::vector<int> placed =
+        place_points(points, camera_, options_.snap_px, levels, extractor, taken, features_);
+    matches_.assign(features_.keypoints.size(), kNone);
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+      if (placed[i] != kNone) matches_[static_cast<std::size_t>(placed[i])] = patches[i].landmark;
     }
-    features_.build_grid(camera_.width, camera_.height);
   }
 
   /// Matches further landmarks by descriptor.
@@ -81,30 +72,6 @@ class Describer {
   std::vector<LandmarkId> take_matches() { return std::move(matches_); }
 
  private:
-  int octave_of(const Landmark& landmark) const {
-    return predict_octave(landmark, (cam_from_world_ * landmark.position).norm(),
-                          options_.localise.levels);
-  }
-
-  /// The free feature at a patch that looks most like the landmark, or kNone.
-  int feature_of(const Landmark& landmark, const PatchMatch& patch, int octave) {
-    found_.clear();
-    features_.find_in_area(patch.pixel, options_.snap_px * options_.localise.levels.scale(octave),
-                           octave - 1, octave + 1, found_);
-    int best = kNone;
-    int least = kLooseDistance + 1;
-    for (const int k : found_) {
-      if (matches_[static_cast<std::size_t>(k)] != kNone) continue;
-      const int distance =
-          hamming_distance(landmark.descriptor, features_.descriptors[static_cast<std::size_t>(k)]);
-      if (distance < least) {
-        least = distance;
-        best = k;
-      }
-    }
-    return best;
-  }
-
   void move(int k, const PatchMatch& patch) {
     Keypoint& keypoint = features_.keypoints[static_cast<std::size_t>(k)];
     keypoint.raw = patch.raw;
@@ -131,7 +98,6 @@ class Describer {
   const DescribeKeyframeOptions& options_;
   Features features_;
   std::vector<LandmarkId> matches_;
-  std::vector<int> found_;
 };
 
 }  // namespace

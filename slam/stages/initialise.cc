@@ -5,6 +5,7 @@
 #include <future>
 
 #include "slam/features/matching.h"
+#include "slam/features/place_points.h"
 #include "slam/fitting/fit_homography.h"
 #include "slam/optimize/bundle.h"
 #include "slam/segmentation/plane_segmenter.h"
@@ -72,15 +73,66 @@ Keyframe make_keyframe(const ImageFeatures& image, const Pose& cam_from_world, c
   return keyframe;
 }
 
-MonoInitialiser::MonoInitialiser(const InitialiseOptions& options, const Camera& camera)
-    : options_(options), camera_(camera) {}
+MonoInitialiser::MonoInitialiser(const InitialiseOptions& options, const PrepareOptions& prepare,
+                                 const Camera& camera)
+    : options_(options), camera_(camera), preparer_(prepare, camera), tracks_(options.tracks) {}
 
-void MonoInitialiser::set_reference(const ImageFeatures& image) {
+bool MonoInitialiser::set_reference(ImageFeatures& image) {
+  if (image.features == nullptr) preparer_.extract(image, options_.features);
+  reference_.reset();
+  if (image.features->size() < options_.min_features) return false;
   reference_ = image;
   guess_.clear();
   for (const Keypoint& keypoint : image.features->keypoints) {
     guess_.push_back(keypoint.pixel.cast<double>());
   }
+  if (options_.by_patches) tracks_.start(*image.pyramid, *image.features);
+  return true;
+}
+
+void MonoInitialiser::match_tracks(const ImageFeatures& image, Matches& matches) {
+  tracks_.follow(*image.pyramid);
+  if (tracks_.tracks().size() < options_.min_track_share * tracks_.started()) return;
+  for (const CornerTrack& track : tracks_.tracks()) {
+    const auto r = static_cast<std::size_t>(track.keypoint);
+    matches.keypoints.emplace_back(track.keypoint, kNone);
+    matches.pairs.push_back({reference_->features->keypoints[r].pixel.cast<double>(),
+                             camera_.undistort(track.raw.cast<double>())});
+    matches.quality.push_back(1.0F - track.correlation);
+  }
+}
+
+void MonoInitialiser::match_descriptors(const ImageFeatures& image, Matches& matches) {
+  const double window_px = options_.window_px * std::max(camera_.width, camera_.height) / 640.0;
+  matches.keypoints =
+      match_for_initialisation(*reference_->features, *image.features, guess_, window_px);
+  for (const auto& [i, j] : matches.keypoints) {
+    const auto r = static_cast<std::size_t>(i);
+    const auto c = static_cast<std::size_t>(j);
+    matches.pairs.push_back({reference_->features->keypoints[r].pixel.cast<double>(),
+                             image.features->keypoints[c].pixel.cast<double>()});
+    matches.quality.push_back(static_cast<float>(
+        hamming_distance(reference_->features->descriptors[r], image.features->descriptors[c])));
+  }
+}
+
+void MonoInitialiser::place_tracks(ImageFeatures& image, Matches& matches) {
+  Features features = preparer_.extract_raw(image, options_.features);
+  std::vector<FoundPoint> points;
+  for (std::size_t m = 0; m < matches.keypoints.size(); ++m) {
+    const auto r = static_cast<std::size_t>(matches.keypoints[m].first);
+    FoundPoint point;
+    point.raw = tracks_.tracks()[m].raw;
+    point.pixel = matches.pairs[m].cur;
+    point.octave = reference_->features->keypoints[r].octave;
+    point.descriptor = reference_->features->descriptors[r];
+    points.push_back(point);
+  }
+  std::vector<char> taken(features.keypoints.size(), 0);
+  const std::vector<int> placed = place_points(points, camera_, options_.snap_px, options_.levels,
+                                               preparer_.extractor(), taken, features);
+  for (std::size_t m = 0; m < placed.size(); ++m) matches.keypoints[m].second = placed[m];
+  image.features = std::make_shared<const Features>(std::move(features));
 }
 
 TwoViewResult MonoInitialiser::solve(const std::vector<PointPair>& pairs,
@@ -121,54 +173,44 @@ TwoViewResult MonoInitialiser::solve(const std::vector<PointPair>& pairs,
                               fundamental->inlier, camera_, options_.two_view);
 }
 
-InitialiseResult MonoInitialiser::try_image(const ImageFeatures& image, Map& map) {
+InitialiseResult MonoInitialiser::try_image(ImageFeatures& image, Map& map) {
   InitialiseResult result;
-  if (image.features->size() < options_.min_features) {
-    reference_.reset();
-    result.reason = "too few features";
-    return result;
+  if (!options_.by_patches && image.features == nullptr) {
+    preparer_.extract(image, options_.features);
   }
   if (!reference_ || image.frame_index - reference_->frame_index > options_.max_reference_age) {
-    set_reference(image);
-    result.reason = "waiting for parallax";
+    result.reason = set_reference(image) ? "waiting for parallax" : "too few features";
     return result;
   }
-  const double window_px = options_.window_px * std::max(camera_.width, camera_.height) / 640.0;
-  const std::vector<std::pair<int, int>> matches =
-      match_for_initialisation(*reference_->features, *image.features, guess_, window_px);
-  result.matches = static_cast<int>(matches.size());
+  Matches matches;
+  if (options_.by_patches) {
+    match_tracks(image, matches);
+  } else {
+    match_descriptors(image, matches);
+  }
+  result.matches = static_cast<int>(matches.pairs.size());
   if (result.matches < options_.min_matches) {
-    set_reference(image);
-    result.reason = "too few matches";
+    result.reason = set_reference(image) ? "too few matches" : "too few features";
     return result;
   }
-  std::vector<PointPair> pairs;
-  std::vector<float> quality;
-  for (const auto& [i, j] : matches) {
-    const auto r = static_cast<std::size_t>(i);
-    const auto c = static_cast<std::size_t>(j);
-    pairs.push_back({reference_->features->keypoints[r].pixel.cast<double>(),
-                     image.features->keypoints[c].pixel.cast<double>()});
-    quality.push_back(static_cast<float>(hamming_distance(reference_->features->descriptors[r],
-                                                          image.features->descriptors[c])));
-  }
-  const TwoViewResult two_view = solve(pairs, quality, result.used_homography);
+  const TwoViewResult two_view = solve(matches.pairs, matches.quality, result.used_homography);
   if (two_view.failure != TwoViewFailure::kNone) {
     result.reason = explain(two_view.failure);
     return result;
   }
+  if (options_.by_patches) place_tracks(image, matches);
 
   Map start;
   start.keyframes.put(make_keyframe(*reference_, Pose::Identity(), start));
   Keyframe second = make_keyframe(image, two_view.cur_from_ref, start);
   second.parent = 0;
   start.keyframes.put(second);
-  for (std::size_t m = 0; m < matches.size(); ++m) {
-    if (!two_view.points_ref[m]) continue;
-    const auto& keypoint =
-        image.features->keypoints[static_cast<std::size_t>(matches[m].second)];
+  for (std::size_t m = 0; m < matches.keypoints.size(); ++m) {
+    const auto& [i, j] = matches.keypoints[m];
+    if (!two_view.points_ref[m] || j == kNone) continue;
+    const auto& keypoint = image.features->keypoints[static_cast<std::size_t>(j)];
     add_landmark(start, *two_view.points_ref[m], color_at(image.grey_or_bgr, keypoint.raw),
-                 {{0, matches[m].first}, {1, matches[m].second}}, options_.levels);
+                 {{0, i}, {1, j}}, options_.levels);
   }
   BundleOptions bundle;
   bundle.iterations = 20;

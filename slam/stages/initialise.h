@@ -4,11 +4,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "slam/data/camera.h"
 #include "slam/data/frame.h"
 #include "slam/data/map.h"
+#include "slam/features/corner_tracks.h"
 #include "slam/geometry/two_view.h"
 #include "slam/stages/prepare_image.h"
 
@@ -16,9 +18,14 @@ namespace planecast::slam {
 
 /// Defaults from ORB-SLAM (Mur-Artal 2015, section IV) but where noted.
 struct InitialiseOptions {
-  int min_features = 100;          ///< in the reference image
-  int min_matches = 100;           ///< else the reference is replaced
-  double window_px = 100.0;        ///< at 640 px image width, scaled with it
+  bool by_patches = true;  ///< follow corners by their looks, else match ORB descriptors
+  CornerTracksOptions tracks;
+  double min_track_share = 0.3;  ///< of the reference's corners still followed, else it is replaced
+  double snap_px = 2.0;          ///< as in DescribeKeyframeOptions
+  int features = 2000;           ///< of the two images [K]
+  int min_features = 100;        ///< in the reference image
+  int min_matches = 100;         ///< else the reference is replaced
+  double window_px = 100.0;      ///< at 640 px image width, scaled with it
   double homography_share = 0.45;  ///< H when S_H / (S_H + S_F) is above it [P]
   int max_reference_age = 90;      ///< frames after which a reference without parallax is replaced
   int min_landmarks = 50;
@@ -40,22 +47,36 @@ struct InitialiseResult {
 /// Initialization and Map Initialization").
 class MonoInitialiser {
  public:
-  MonoInitialiser(const InitialiseOptions& options, const Camera& camera);
+  MonoInitialiser(const InitialiseOptions& options, const PrepareOptions& prepare,
+                  const Camera& camera);
 
   /// Tries the image against the reference. On success `map` (empty before) holds keyframes 0 (the
-  /// reference, at the origin) and 1 (this image) and their landmarks.
-  InitialiseResult try_image(const ImageFeatures& image, Map& map);
+  /// reference, at the origin) and 1 (this image) and their landmarks. The image is given features
+  /// where they are needed.
+  InitialiseResult try_image(ImageFeatures& image, Map& map);
   void reset() { reference_.reset(); }
   const std::optional<ImageFeatures>& reference() const { return reference_; }
 
  private:
-  void set_reference(const ImageFeatures& image);
+  struct Matches {
+    std::vector<std::pair<int, int>>
+        keypoints;  ///< (reference, image); the image's only by descriptors
+    std::vector<PointPair> pairs;
+    std::vector<float> quality;  ///< lower is better
+  };
+  bool set_reference(ImageFeatures& image);
+  void match_tracks(const ImageFeatures& image, Matches& matches);
+  void match_descriptors(const ImageFeatures& image, Matches& matches);
+  /// Gives the image's keypoints to matches found by patches; those without one are left out (-1).
+  void place_tracks(ImageFeatures& image, Matches& matches);
   TwoViewResult solve(const std::vector<PointPair>& pairs, const std::vector<float>& quality,
                       bool& used_homography) const;
 
   InitialiseOptions options_;
   Camera camera_;
+  ImagePreparer preparer_;
   std::optional<ImageFeatures> reference_;
+  CornerTracks tracks_;
   std::vector<Eigen::Vector2d> guess_;
 };
 

@@ -66,11 +66,10 @@ void KeyframeMapper::segment(const ImageFeatures& image, Keyframe& keyframe, Sta
   frame.image = image.grey_or_bgr;
   frame.depth = image.depth;
   frame.labels = image.labels;
+  // The segmenter alone says what counts as a mask, not what happened to come with the frame.
   keyframe.label_image = segmenter_->segment(frame);
-  if (!keyframe.label_image.empty()) {
-    for (std::size_t k = 0; k < keyframe.labels.size(); ++k) {
-      keyframe.labels[k] = label_at(keyframe.label_image, keyframe.features->keypoints[k].raw);
-    }
+  for (std::size_t k = 0; k < keyframe.labels.size(); ++k) {
+    keyframe.labels[k] = label_at(keyframe.label_image, keyframe.features->keypoints[k].raw);
   }
   times.emplace_back("Instance Planar Segmentation", watch.lap_ms());
 }
@@ -117,6 +116,19 @@ KeyframeId KeyframeMapper::put_keyframe(Map& map, KeyframeJob& job, StageTimes& 
   return id;
 }
 
+void KeyframeMapper::create_points(Map& map, KeyframeId id, const ImageFeatures& image,
+                                   PointMappingStats& stats) {
+  if (options_.search_by_patches) {
+    search_points(map, id, camera_, image.grey_or_bgr, options_.prepare.max_keypoint_depth_m,
+                  options_.search, preparer_.extractor(), stats);
+  } else {
+    create_landmarks(map, id, camera_, options_.rgbd, image.grey_or_bgr, options_.points, stats);
+  }
+  if (options_.rgbd) {
+    create_landmarks_from_depth(map, id, camera_, image.grey_or_bgr, options_.points, stats);
+  }
+}
+
 KeyframeReport KeyframeMapper::insert(Map& map, KeyframeJob job) {
   KeyframeReport report;
   Stopwatch total;
@@ -127,8 +139,7 @@ KeyframeReport KeyframeMapper::insert(Map& map, KeyframeJob job) {
   cull_landmarks(map, id, options_.rgbd, options_.points, report.points);
   if (options_.map_planes) plane_mapper_.cull_non_planar(map, id, report.planes);
   Stopwatch watch;
-  create_landmarks(map, id, camera_, options_.rgbd, job.image.grey_or_bgr, options_.points,
-                   report.points);
+  create_points(map, id, job.image, report.points);
   report.times.emplace_back("Triangulation", watch.lap_ms());
   fuse_landmarks(map, id, camera_, options_.rgbd, options_.points, report.points);
   report.times.emplace_back("Fusing", watch.lap_ms());

@@ -14,6 +14,7 @@
 #include "slam/stages/localise.h"
 #include "slam/stages/map_planes.h"
 #include "slam/stages/map_points.h"
+#include "slam/stages/search_points.h"
 
 namespace planecast::slam {
 
@@ -25,6 +26,8 @@ struct KeyframeMapperOptions {
   bool map_planes = true;
   PrepareOptions prepare;
   DescribeKeyframeOptions describe;
+  bool search_by_patches = true;  ///< new landmarks by search_points, else by descriptors
+  SearchPointsOptions search;
   PointMappingOptions points;
   PlaneMappingOptions planes;
   BundleOptions bundle;
@@ -66,6 +69,7 @@ class KeyframeMapper {
 
  private:
   KeyframeId put_keyframe(Map& map, KeyframeJob& job, StageTimes& times);
+  void create_points(Map& map, KeyframeId id, const ImageFeatures& image, PointMappingStats& stats);
   void segment(const ImageFeatures& image, Keyframe& keyframe, StageTimes& times);
 
   KeyframeMapperOptions options_;

@@ -90,6 +90,7 @@ void PlaneMapper::update(Map& map, KeyframeId keyframe, PlaneMappingStats& stats
     stats.reestimated += reestimate_planes(map, keyframe, context);
     stats.dropped += drop_weak_planes(map, context);
   }
+  if (!options_.project) return;
   const StepTimer timer(stats.refine_ms);
   const RefineCounts counts = project_landmarks(map, keyframe, context);
   stats.refined += counts.refined;

@@ -18,6 +18,7 @@ struct PlaneMappingOptions {
   int weak_max_keyframes = 5;  ///< a weak plane that has not grown for this long is dropped
   PlaneMerge merge = PlaneMerge::kDefault;
   bool graph_cut = true;  ///< false: plain sequential RANSAC, for the ablation
+  bool project = true;    ///< false: landmarks are not projected onto their planes
   std::uint64_t seed = 1;
 };
 

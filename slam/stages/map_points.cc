@@ -10,15 +10,6 @@
 namespace planecast::slam {
 namespace {
 
-std::vector<KeyframeId> best_neighbours(const Map& map, KeyframeId keyframe, std::size_t most) {
-  std::vector<KeyframeId> ids;
-  for (const auto& [id, shared] : map.covisible(keyframe)) {
-    if (ids.size() == most) break;
-    ids.push_back(id);
-  }
-  return ids;
-}
-
 double squared_error_px(const Camera& camera, const Pose& cam_from_world,
                         const Eigen::Vector3d& point_world, const Keypoint& keypoint) {
   const Eigen::Vector3d point_cam = cam_from_world * point_world;
@@ -38,10 +29,36 @@ bool scales_agree(const Keyframe& a, const Keypoint& in_a, const Keyframe& b, co
   return ratio * slack > octave_ratio && ratio < octave_ratio * slack;
 }
 
-std::optional<Eigen::Vector3d> new_point(const Camera& camera, const Keyframe& a,
-                                         const Keypoint& in_a, const Keyframe& b,
-                                         const Keypoint& in_b,
-                                         const PointMappingOptions& options) {
+std::vector<LandmarkId> landmarks_in(const Keyframe& keyframe) {
+  std::vector<LandmarkId> ids;
+  for (const LandmarkId id : keyframe.landmarks) {
+    if (id != kNone) ids.push_back(id);
+  }
+  return ids;
+}
+
+}  // namespace
+
+std::vector<KeyframeId> best_neighbours(const Map& map, KeyframeId keyframe, std::size_t most) {
+  std::vector<KeyframeId> ids;
+  for (const auto& [id, shared] : map.covisible(keyframe)) {
+    if (ids.size() == most) break;
+    ids.push_back(id);
+  }
+  return ids;
+}
+
+bool wide_enough(const Map& map, const Keyframe& keyframe, const Keyframe& neighbour, bool rgbd,
+                 const PointMappingOptions& options) {
+  const double baseline = (keyframe.centre_world() - neighbour.centre_world()).norm();
+  return baseline >= (rgbd ? options.min_baseline_m
+                           : options.min_baseline_share * map.median_depth(neighbour.id));
+}
+
+std::optional<Eigen::Vector3d> point_from_two(const Camera& camera, const Keyframe& a,
+                                              const Keypoint& in_a, const Keyframe& b,
+                                              const Keypoint& in_b,
+                                              const PointMappingOptions& options) {
   const Eigen::Vector2d pixel_a = in_a.pixel.cast<double>();
   const Eigen::Vector2d pixel_b = in_b.pixel.cast<double>();
   const Eigen::Vector3d ray_a = a.cam_from_world.linear().transpose() * camera.ray(pixel_a);
@@ -74,16 +91,6 @@ LandmarkId put_landmark(Map& map, const Eigen::Vector3d& position, KeyframeId ke
   return landmark.id;
 }
 
-std::vector<LandmarkId> landmarks_in(const Keyframe& keyframe) {
-  std::vector<LandmarkId> ids;
-  for (const LandmarkId id : keyframe.landmarks) {
-    if (id != kNone) ids.push_back(id);
-  }
-  return ids;
-}
-
-}  // namespace
-
 void cull_landmarks(Map& map, KeyframeId keyframe, bool rgbd, const PointMappingOptions& options,
                     PointMappingStats& stats) {
   // A landmark from depth needs one more observer than its maker, a triangulated one two.
@@ -110,15 +117,12 @@ void create_landmarks(Map& map, KeyframeId id, const Camera& camera, bool rgbd,
   for (const KeyframeId neighbour_id : best_neighbours(map, id, most)) {
     const Keyframe& keyframe = map.keyframes.at(id);
     const Keyframe& neighbour = map.keyframes.at(neighbour_id);
-    const double baseline = (keyframe.centre_world() - neighbour.centre_world()).norm();
-    const double wanted = rgbd ? options.min_baseline_m
-                               : options.min_baseline_share * map.median_depth(neighbour_id);
-    if (baseline < wanted) continue;
+    if (!wide_enough(map, keyframe, neighbour, rgbd, options)) continue;
     for (const auto& [i, j] : match_along_epipolar(keyframe, neighbour, camera, options.levels)) {
       const Keypoint& in_a = keyframe.features->keypoints[static_cast<std::size_t>(i)];
       const Keypoint& in_b = neighbour.features->keypoints[static_cast<std::size_t>(j)];
       const std::optional<Eigen::Vector3d> point =
-          new_point(camera, keyframe, in_a, neighbour, in_b, options);
+          point_from_two(camera, keyframe, in_a, neighbour, in_b, options);
       if (!point) continue;
       const LandmarkId landmark = put_landmark(map, *point, id, image, in_a);
       map.add_observation(landmark, id, i);
@@ -127,7 +131,11 @@ void create_landmarks(Map& map, KeyframeId id, const Camera& camera, bool rgbd,
       ++stats.triangulated;
     }
   }
-  if (!rgbd) return;
+}
+
+void create_landmarks_from_depth(Map& map, KeyframeId id, const Camera& camera,
+                                 const cv::Mat& image, const PointMappingOptions& options,
+                                 PointMappingStats& stats) {
   const std::shared_ptr<const Features> features = map.keyframes.at(id).features;
   const Pose world_from_cam = map.keyframes.at(id).cam_from_world.inverse();
   for (int k = 0; k < features->size(); ++k) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "slam/data/camera.h"
@@ -32,6 +33,24 @@ struct PointMappingStats {
   int keyframes_culled = 0;
 };
 
+/// Keyframes that share most landmarks with `keyframe`, most first.
+std::vector<KeyframeId> best_neighbours(const Map& map, KeyframeId keyframe, std::size_t most);
+
+/// Whether two keyframes are far enough apart to triangulate.
+bool wide_enough(const Map& map, const Keyframe& keyframe, const Keyframe& neighbour, bool rgbd,
+                 const PointMappingOptions& options);
+
+/// The point that two keypoints see: parallax, positive depth, reprojection (chi2) and the ratio of
+/// their octaves must agree.
+std::optional<Eigen::Vector3d> point_from_two(const Camera& camera, const Keyframe& a,
+                                              const Keypoint& in_a, const Keyframe& b,
+                                              const Keypoint& in_b,
+                                              const PointMappingOptions& options);
+
+/// A new landmark without observations.
+LandmarkId put_landmark(Map& map, const Eigen::Vector3d& position, KeyframeId keyframe,
+                        const cv::Mat& image, const Keypoint& keypoint);
+
 /// Removes landmarks on trial that are found too rarely or have too few observers.
 void cull_landmarks(Map& map, KeyframeId keyframe, bool rgbd, const PointMappingOptions& options,
                     PointMappingStats& stats);
@@ -41,6 +60,11 @@ void cull_landmarks(Map& map, KeyframeId keyframe, bool rgbd, const PointMapping
 void create_landmarks(Map& map, KeyframeId keyframe, const Camera& camera, bool rgbd,
                       const cv::Mat& image, const PointMappingOptions& options,
                       PointMappingStats& stats);
+
+/// A new landmark for each keypoint with depth that still has none.
+void create_landmarks_from_depth(Map& map, KeyframeId keyframe, const Camera& camera,
+                                 const cv::Mat& image, const PointMappingOptions& options,
+                                 PointMappingStats& stats);
 
 /// Merges duplicates between `keyframe` and its neighbours, both ways.
 void fuse_landmarks(Map& map, KeyframeId keyframe, const Camera& camera, bool rgbd,

@@ -8,49 +8,26 @@
 #include <utility>
 
 #include "slam/features/pyramid.h"
+#include "slam/features/warp_patch.h"
+#include "slam/geometry/change_of_view.h"
 #include "slam/geometry/lens.h"
 
 namespace planecast::slam {
 namespace {
 
-/// Beyond this change of scale, or of angle between the views, a patch is not looked for.
-constexpr double kMaxScale = 3.0;
+/// Beyond this angle between the views a patch is not looked for.
 constexpr double kMinViewCosine = 0.5;
 
-/// How the surroundings of a landmark in a keyframe appear in the image: d(raw pixel in the image)
-/// by d(raw pixel in the keyframe). The surface is the landmark's plane, or else faces the
-/// keyframe.
-std::optional<Eigen::Matrix2d> change_of_view(const Map& map, const Camera& camera,
-                                              const Keyframe& keyframe, const Landmark& landmark,
-                                              const Pose& cam_from_keyframe) {
-  const Eigen::Vector3d in_keyframe = keyframe.cam_from_world * landmark.position;
-  if (!(in_keyframe.z() > 0.0)) return std::nullopt;
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+/// Normal of the surface about a landmark in a keyframe's camera: that of its plane, or else it
+/// faces the camera.
+Eigen::Vector3d surface_normal(const Map& map, const Keyframe& keyframe, const Landmark& landmark,
+                               const Eigen::Vector3d& in_keyframe) {
   if (const Plane* plane = map.planes.find(landmark.plane)) {
-    const Eigen::Vector3d turned = keyframe.cam_from_world.linear() * plane->normal;
+    const Eigen::Vector3d normal = keyframe.cam_from_world.linear() * plane->normal;
     // Nearly edge-on the plane says nothing about the patch.
-    if (std::abs(turned.dot(in_keyframe.normalized())) > 0.2) normal = turned;
+    if (std::abs(normal.dot(in_keyframe.normalized())) > 0.2) return normal;
   }
-  const Eigen::Vector2d pixel = camera.project(in_keyframe);
-  const double along = normal.dot(in_keyframe);
-  const auto image_of = [&](const Eigen::Vector2d& offset) {
-    const Eigen::Vector3d ray = camera.ray(pixel + offset);
-    const Eigen::Vector3d on_surface = ray * (along / normal.dot(ray));
-    return camera.project(cam_from_keyframe * on_surface);
-  };
-  constexpr double kReach = 2.0;  // px
-  Eigen::Matrix2d undistorted;
-  undistorted.col(0) = (image_of({kReach, 0.0}) - image_of({-kReach, 0.0})) / (2.0 * kReach);
-  undistorted.col(1) = (image_of({0.0, kReach}) - image_of({0.0, -kReach})) / (2.0 * kReach);
-  if (!undistorted.allFinite()) return std::nullopt;
-  if (!camera.has_distortion()) return undistorted;
-  const Eigen::Vector2d in_image = camera.project(cam_from_keyframe * in_keyframe);
-  return Eigen::Matrix2d(raw_by_undistorted(camera, in_image) * undistorted *
-                         raw_by_undistorted(camera, pixel).inverse());
-}
-
-int half_level(int octave, const ScaleLevels& levels) {
-  return static_cast<int>(std::lround(std::log2(levels.scale(octave))));
+  return Eigen::Vector3d::UnitZ();
 }
 
 /// Landmarks by cell of the image, the most observed first.
@@ -112,29 +89,21 @@ std::optional<PatchMatch> match_patch(const Map& map, const Camera& camera,
   const Keyframe& keyframe = map.keyframes.at(seen.keyframe);
   const Keypoint& keypoint = keyframe.features->keypoints[static_cast<std::size_t>(seen.keypoint)];
   const Pose cam_from_keyframe = cam_from_world * keyframe.cam_from_world.inverse();
-  const auto view = change_of_view(map, camera, keyframe, landmark, cam_from_keyframe);
+  const Eigen::Vector3d in_keyframe = keyframe.cam_from_world * landmark.position;
+  const auto view = change_of_view(
+      camera, in_keyframe, surface_normal(map, keyframe, landmark, in_keyframe), cam_from_keyframe);
   if (!view) return std::nullopt;
-  const double scale = std::sqrt(std::abs(view->determinant()));
-  if (!(scale > 1.0 / kMaxScale && scale < kMaxScale)) return std::nullopt;
-
-  const int grown = static_cast<int>(std::lround(std::log2(scale)));
-  const int last =
-      static_cast<int>(std::min(image.levels.size(), keyframe.pyramid->levels.size())) - 1;
-  const int level = std::clamp(half_level(keypoint.octave, options.levels) + grown, 0, last);
-  const int keyframe_level = std::clamp(level - grown, 0, last);
-  const Eigen::Matrix2d ref_from_patch = view->inverse() * std::ldexp(1.0, level - keyframe_level);
-  const auto patch =
-      make_template(keyframe.pyramid->levels[static_cast<std::size_t>(keyframe_level)],
-                    at_level(keypoint.raw, keyframe_level), ref_from_patch.cast<float>());
+  const auto patch = warp_patch(*keyframe.pyramid, keypoint, *view, image, options.levels);
   if (!patch) return std::nullopt;
-  const auto alignment = align_patch(*patch, image.levels[static_cast<std::size_t>(level)],
-                                     at_level(start_raw, level), options.align);
+  const auto alignment =
+      align_patch(patch->looks, image.levels[static_cast<std::size_t>(patch->level)],
+                  at_level(start_raw, patch->level), options.align);
   if (!alignment || alignment->correlation < options.min_correlation) return std::nullopt;
   PatchMatch match;
   match.landmark = landmark.id;
-  match.raw = from_level(alignment->pixel, level);
+  match.raw = from_level(alignment->pixel, patch->level);
   match.pixel = camera.undistort(match.raw.cast<double>());
-  match.level = level;
+  match.level = patch->level;
   return match;
 }
 

@@ -24,6 +24,7 @@ constexpr double kMinMaskRatio = 0.3;  ///< of a mask group's points that must b
 /// the end anyway.
 constexpr double kBackgroundCost = 0.5;
 constexpr int kMaxModelsWithoutMasks = 8;
+constexpr int kMaxModelsPerMask = 3;
 /// Implausible fits after which nothing better is expected: fits come in order of their score.
 constexpr int kMaxImplausible = 2;
 constexpr int kMaxSamples = 500;
@@ -78,7 +79,9 @@ PlanePoints select(const PlanePoints& points, const std::vector<int>& indices) {
 class PlaneFinder {
  public:
   PlaneFinder(Map& map, KeyframeId keyframe, const PlaneContext& context, KeyframePoints& shown)
-      : map_(map), keyframe_(keyframe), context_(context), shown_(shown) {}
+      : map_(map), keyframe_(keyframe), context_(context), shown_(shown) {
+    for (const double band : shown.points.band) weights_.push_back(1.0 / (band * band));
+  }
 
   int find_in_masks() {
     std::vector<int> labels = shown_.label;
@@ -87,10 +90,22 @@ class PlaneFinder {
     }
     int found = 0;
     for (const std::vector<int>& group : groups_by_label(labels, context_.options.min_inliers)) {
-      const auto candidate = fit(group, context_.scale.eps_d, kMinMaskRatio);
-      if (!candidate || !is_plausible(*candidate)) continue;
-      add_plane(*candidate, shown_.label[group.front()]);
-      ++found;
+      // A mask may cover more than one plane: what the first leaves is tried again.
+      fit_sequentially(group, context_.options.min_inliers, kMaxModelsPerMask,
+                       [&](const std::vector<int>& left) {
+                         auto candidate = fit(left, context_.scale.eps_d, kMinMaskRatio);
+                         if (!candidate || !tighten(left, *candidate)) return std::vector<int>();
+                         std::vector<int> consumed = near(left, *candidate, context_.scale.eps_d);
+                         keep_connected(shown_, context_.scale, *candidate);
+                         if (static_cast<int>(candidate->inliers.size()) <
+                                 context_.options.min_inliers ||
+                             !is_plausible(*candidate)) {
+                           return std::vector<int>();
+                         }
+                         add_plane(*candidate, shown_.label[group.front()]);
+                         ++found;
+                         return consumed;
+                       });
     }
     return found;
   }
@@ -110,7 +125,7 @@ class PlaneFinder {
       // A slab of clutter leaves the pool too, or it would be found again.
       const std::vector<int> consumed = candidate->inliers;
       ++implausible;
-      if (!widen(left, *candidate)) return consumed;
+      if (!tighten(left, *candidate)) return consumed;
       const bool coherent = coherence(shown_, *candidate) > plausible_.min_coherence;
       keep_coherent(shown_, plausible_, *candidate);
       keep_connected(shown_, context_.scale, *candidate);
@@ -174,30 +189,42 @@ class PlaneFinder {
     return GraphCutRansac(model, sampler, neighbours, options).run();
   }
 
-  /// Takes in what lies within eps_d and refits; false where that is thicker than eps_Pi.
-  bool widen(const std::vector<int>& pool, PlaneCandidate& candidate) const {
-    std::vector<double> weights;
-    for (const double band : shown_.points.band) weights.push_back(1.0 / (band * band));
-    std::optional<PlaneFit> fitted;
-    for (int round = 0; round < 2; ++round) {
-      candidate.inliers.clear();
-      for (const int i : pool) {
-        const double distance = candidate.plane.signed_distance(shown_.points.positions[i]);
-        if (std::abs(distance) < shown_.points.band[i] * context_.scale.eps_d &&
-            shown_.points.view_from[i].dot(candidate.plane.normal) > 0.0) {
-          candidate.inliers.push_back(i);
-        }
+  /// Points of the pool seen from the plane's front within `eps` times their band.
+  std::vector<int> near(const std::vector<int>& pool, const PlaneCandidate& candidate,
+                        double eps) const {
+    std::vector<int> result;
+    for (const int i : pool) {
+      const double distance = candidate.plane.signed_distance(shown_.points.positions[i]);
+      if (std::abs(distance) < shown_.points.band[i] * eps &&
+          shown_.points.view_from[i].dot(candidate.plane.normal) > 0.0) {
+        result.push_back(i);
       }
-      fitted = fit_plane(shown_.points.positions, candidate.inliers, weights);
+    }
+    return result;
+  }
+
+  /// From eps_d down to the plane's own inlier distance: takes in what lies within and refits. False
+  /// where what is left is degenerate or thicker than eps_Pi.
+  bool tighten(const std::vector<int>& pool, PlaneCandidate& candidate) const {
+    constexpr int kRounds = 4;
+    candidate.eps = context_.scale.eps_d;
+    double rms = 0.0;
+    for (int round = 0; round < kRounds; ++round) {
+      candidate.inliers = near(pool, candidate, candidate.eps);
+      const auto fitted = fit_plane(shown_.points.positions, candidate.inliers, weights_);
       if (!fitted) return false;
       const bool turned = fitted->plane.normal.dot(candidate.plane.normal) < 0.0;
       candidate.plane = turned ? fitted->plane.flipped() : fitted->plane;
+      rms = fitted->rms;
+      const PlanePoints support = select(shown_.points, near(pool, candidate, context_.scale.eps_d));
+      candidate.eps = own_eps(candidate.plane, support, context_.scale);
     }
-    return fitted->rms < context_.scale.eps_pi;
+    candidate.inliers = near(pool, candidate, candidate.eps);
+    return rms < context_.scale.eps_pi;
   }
 
   bool is_plausible(const PlaneCandidate& candidate) const {
-    return is_broad(shown_, candidate, plausible_, context_.scale) &&
+    return is_broad(shown_, candidate, plausible_) &&
            contrast(map_, shown_, candidate, context_.scale) > plausible_.min_contrast;
   }
 
@@ -224,7 +251,8 @@ class PlaneFinder {
       }
     }
     plane.weak =
-        static_cast<int>(candidate.inliers.size()) < strong_support(plane, context_.options);
+        static_cast<int>(candidate.inliers.size()) < strong_support(plane, context_.options) ||
+        least_observers(plane, context_) > 1;
     map_.planes.put(std::move(plane));
   }
 
@@ -233,6 +261,7 @@ class PlaneFinder {
   const PlaneContext& context_;
   KeyframePoints& shown_;
   PlausibilityOptions plausible_;
+  std::vector<double> weights_;  ///< of the points in least squares
   std::uint64_t fits_ = 0;
 };
 

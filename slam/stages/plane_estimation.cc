@@ -96,10 +96,11 @@ bool reestimate(Plane& plane, const PlaneSupport& support, const PlaneContext& c
 void release_far_support(Map& map, Plane& plane, const PlaneSupport& support,
                          const PlaneContext& context) {
   const std::size_t landmarks = support.landmarks.size();
+  const double eps = own_eps({plane.normal, plane.offset}, support.points, context.scale);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < support.points.positions.size(); ++i) {
     const double distance = std::abs(plane.signed_distance(support.points.positions[i]));
-    const bool far = distance > kFarBands * support.points.band[i] * context.scale.eps_d;
+    const bool far = distance > kFarBands * support.points.band[i] * eps;
     if (i < landmarks) {
       if (far) map.landmarks.at(support.landmarks[i]).plane = kNone;
     } else if (!far) {

@@ -82,6 +82,7 @@ struct Growing {
   PlaneId plane = kNone;
   std::vector<Eigen::Vector3d> support;
   double link = 0.0;
+  double eps = 0.0;  ///< own_eps
 
   int min_explained() const {
     return static_cast<int>(support.size()) < kLargeSupport ? kMinExplained : kMinExplainedByLarge;
@@ -103,6 +104,8 @@ std::vector<Growing> growing_planes(const Map& map, const PlaneContext& context)
     growing.plane = plane.id;
     growing.support = thinned(support[plane.id].points.positions);
     growing.link = link_of(growing.support, context.scale);
+    growing.eps =
+        own_eps({plane.normal, plane.offset}, support[plane.id].points, context.scale);
     result.push_back(std::move(growing));
   }
   return result;
@@ -123,17 +126,18 @@ int explained_neighbours(const KeyframePoints& shown, int i, const Plane& plane,
 
 /// The nearest plane that takes point i, or null.
 Growing* taker_of(const Map& map, std::vector<Growing>& planes, const KeyframePoints& shown, int i,
-                  const MaskVotes& masks, const PlaneContext& context) {
+                  const MaskVotes& masks) {
   const PlanePoints& points = shown.points;
-  double best = points.band[i] * context.scale.eps_d;
+  double best = HUGE_VAL;
   Growing* taker = nullptr;
   for (Growing& growing : planes) {
     const Plane& plane = map.planes.at(growing.plane);
     const double distance = std::abs(plane.signed_distance(points.positions[i]));
-    if (distance >= best || points.view_from[i].dot(plane.normal) <= 0.0) continue;
+    if (distance >= std::min(best, points.band[i] * growing.eps)) continue;
+    if (points.view_from[i].dot(plane.normal) <= 0.0) continue;
     if (!masks.allow(shown.label[i], plane.id) || !growing.is_near(points.positions[i])) continue;
     if (!shown.has_masks &&
-        explained_neighbours(shown, i, plane, context.scale.eps_d) < growing.min_explained()) {
+        explained_neighbours(shown, i, plane, growing.eps) < growing.min_explained()) {
       continue;
     }
     best = distance;
@@ -169,7 +173,7 @@ int expand_planes(Map& map, KeyframeId keyframe, const PlaneContext& context,
     gained = 0;
     for (int i = 0; i < shown.size(); ++i) {
       if (shown.plane[i] != kNone) continue;
-      Growing* taker = taker_of(map, planes, shown, i, masks, context);
+      Growing* taker = taker_of(map, planes, shown, i, masks);
       if (taker == nullptr) continue;
       Plane& plane = map.planes.at(taker->plane);
       shown.plane[i] = plane.id;
@@ -194,10 +198,15 @@ int expand_planes(Map& map, KeyframeId keyframe, const PlaneContext& context,
 void doubt_planes(Map& map, const PlaneContext& context, const KeyframePoints& shown) {
   if (shown.has_masks) return;
   for (Plane& plane : map.planes) {
-    PlaneCandidate candidate{{plane.normal, plane.offset}, {}};
+    PlaneCandidate candidate{{plane.normal, plane.offset}, {}, 0.0};
+    PlanePoints support;
     for (int i = 0; i < shown.size(); ++i) {
-      if (shown.plane[i] == plane.id) candidate.inliers.push_back(i);
+      if (shown.plane[i] != plane.id) continue;
+      candidate.inliers.push_back(i);
+      support.positions.push_back(shown.points.positions[i]);
+      support.band.push_back(shown.points.band[i]);
     }
+    candidate.eps = own_eps(candidate.plane, support, context.scale);
     if (static_cast<int>(candidate.inliers.size()) < kMinJudged) continue;
     const bool good = coherence(shown, candidate) > kDoubtfulCoherence &&
                       contrast(map, shown, candidate, context.scale) > kDoubtfulContrast;

@@ -10,7 +10,7 @@ namespace planecast::slam {
 namespace {
 
 const double kMinCosine = std::cos(15.0 * 3.14159265358979323846 / 180.0);
-constexpr double kMaxCentroidDistance = 1.5;  ///< in eps_d
+constexpr double kMaxCentroidDistance = 3.0;  ///< in eps_d
 constexpr double kPaperMinCosine = 0.8;       ///< T_theta [P]
 constexpr double kPaperMaxOffset = 10.0;      ///< T_d in eps_d [P]
 constexpr std::size_t kMostCompared = 400;
@@ -62,11 +62,18 @@ PlaneSupport joined(const PlaneSupport& a, const PlaneSupport& b) {
   return result;
 }
 
-bool fits_jointly(const Plane& a, const PlaneSupport& both, const PlaneContext& context) {
+/// Whether one plane explains either support as well as planes must. [D] The smaller one would be
+/// lost in the RMS of both; and a plane that was first seen from afar is tilted, so that the
+/// distances of the centroids alone say little about parts that lie side by side.
+bool fits_jointly(const Plane& a, const PlaneSupport& support_a, const PlaneSupport& support_b,
+                  const PlaneContext& context) {
   Plane trial = a;
-  if (!refit_robustly(trial, both, context)) return false;
-  update_figures(trial, both, context);
-  return trial.rms < context.scale.eps_pi;
+  if (!refit_robustly(trial, joined(support_a, support_b), context)) return false;
+  for (const PlaneSupport* support : {&support_a, &support_b}) {
+    update_figures(trial, *support, context);
+    if (trial.rms >= context.scale.eps_pi) return false;
+  }
+  return true;
 }
 
 bool same_plane(const Plane& a, const Plane& b, const PlaneSupport& support_a,
@@ -78,7 +85,7 @@ bool same_plane(const Plane& a, const Plane& b, const PlaneSupport& support_a,
   if (std::abs(a.signed_distance(centroid_of(support_b.points))) > limit) return false;
   if (std::abs(b.signed_distance(centroid_of(support_a.points))) > limit) return false;
   return extents_touch(support_a.points, support_b.points, context.scale) &&
-         fits_jointly(a, joined(support_a, support_b), context);
+         fits_jointly(a, support_a, support_b, context);
 }
 
 template <typename T>

@@ -94,13 +94,13 @@ void keep_connected(const KeyframePoints& shown, const PlaneScale& scale,
 }
 
 bool is_broad(const KeyframePoints& shown, const PlaneCandidate& candidate,
-              const PlausibilityOptions& options, const PlaneScale& scale) {
+              const PlausibilityOptions& options) {
   double view = 0.0;
   for (const int i : candidate.inliers)
     view += shown.points.view_from[i].dot(candidate.plane.normal);
   const Eigen::Vector2d spread = spread_of(positions_of(shown, candidate), candidate.plane);
   return view > options.min_view_cosine * static_cast<double>(candidate.inliers.size()) &&
-         spread.y() > options.min_breadth * scale.eps_d &&
+         spread.y() > options.min_breadth * candidate.eps &&
          spread.y() > options.min_slimness * spread.x();
 }
 
@@ -109,11 +109,13 @@ double contrast(const Map& map, const KeyframePoints& shown, const PlaneCandidat
   const std::vector<Eigen::Vector3d> patch = positions_of(shown, candidate);
   const double link = link_of(patch, scale);
   const std::vector<char> is_inlier = marks_of(shown, candidate);
+  const int label = candidate.inliers.empty() ? 0 : shown.label[candidate.inliers.front()];
   int beside = 0;
   for (int i = 0; i < shown.size(); ++i) {
     if (is_inlier[i] || !may_rival(map, shown.plane[i], candidate)) continue;
+    if (shown.has_masks && shown.label[i] != label) continue;
     const double distance = candidate.plane.signed_distance(shown.points.positions[i]);
-    const double bands = std::abs(distance) / (shown.points.band[i] * scale.eps_d);
+    const double bands = std::abs(distance) / (shown.points.band[i] * candidate.eps);
     if (bands > 3.0 || bands < 1.0) continue;
     const Eigen::Vector3d foot = shown.points.positions[i] - distance * candidate.plane.normal;
     beside += std::any_of(patch.begin(), patch.end(), [&](const Eigen::Vector3d& p) {

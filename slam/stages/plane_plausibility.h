@@ -15,7 +15,7 @@ struct PlausibilityOptions {
   double min_coherence = 0.5;  ///< share of the inliers' nearest image neighbours that are inliers
   int min_coherent_neighbours = 2;  ///< of kCoherenceNeighbours; an inlier with fewer is dropped
   double min_view_cosine = 0.1;     ///< mean, of viewing rays to the normal
-  double min_breadth = 1.5;         ///< standard deviation along the shorter side, in eps_d
+  double min_breadth = 1.5;  ///< standard deviation along the shorter side, in the candidate's eps
   double min_slimness = 0.07;       ///< of the shorter side over the longer
 };
 inline constexpr int kCoherenceNeighbours = 6;
@@ -24,6 +24,7 @@ inline constexpr int kCoherenceNeighbours = 6;
 struct PlaneCandidate {
   PlaneEquation plane;
   std::vector<int> inliers;  ///< indices into KeyframePoints
+  double eps = 0.0;          ///< its own inlier distance (own_eps)
 };
 
 /// Number of the nearest image neighbours of point i that are marked; needs shown.nearest.
@@ -42,11 +43,12 @@ void keep_connected(const KeyframePoints& shown, const PlaneScale& scale,
 
 /// Neither a line of points nor seen edge-on.
 bool is_broad(const KeyframePoints& shown, const PlaneCandidate& candidate,
-              const PlausibilityOptions& options, const PlaneScale& scale);
+              const PlausibilityOptions& options);
 
 /// Density of points in the band over that beside it, over the same patch; infinite where nothing
 /// is beside. Beside it count the points that no plane owns or one that is nearly parallel, so that
-/// no second layer is laid over a noisy plane.
+/// no second layer is laid over a noisy plane; of an image with masks those of the same instance
+/// alone, which are what the mask claims to be on the plane.
 double contrast(const Map& map, const KeyframePoints& shown, const PlaneCandidate& candidate,
                 const PlaneScale& scale);
 

@@ -116,8 +116,28 @@ std::vector<PlaneSupport> gather_support(const Map& map, const PlaneContext& con
   return result;
 }
 
+double own_eps(const PlaneEquation& plane, const PlanePoints& support, const PlaneScale& scale) {
+  constexpr double kTightest = 0.35;
+  constexpr double kSigmas = 3.0;
+  constexpr double kSigmaOfMedian = 1.4826;  // normal distribution
+  if (support.positions.empty()) return scale.eps_d;
+  std::vector<double> distance;
+  distance.reserve(support.positions.size());
+  for (int i = 0; i < support.size(); ++i) {
+    distance.push_back(std::abs(plane.signed_distance(support.positions[i])) / support.band[i]);
+  }
+  const auto middle = distance.begin() + static_cast<std::ptrdiff_t>(distance.size() / 2);
+  std::nth_element(distance.begin(), middle, distance.end());
+  return std::clamp(kSigmas * kSigmaOfMedian * *middle, kTightest * scale.eps_d, scale.eps_d);
+}
+
 int strong_support(const Plane& plane, const PlaneMappingOptions& options) {
   return plane.label > 0 ? options.strong_inliers : 2 * options.strong_inliers;
+}
+
+int least_observers(const Plane& plane, const PlaneContext& context) {
+  if (context.rgbd) return 1;
+  return plane.label > 0 ? 2 : 3;
 }
 
 void update_figures(Plane& plane, const PlaneSupport& support, const PlaneContext& context) {
@@ -131,7 +151,8 @@ void update_figures(Plane& plane, const PlaneSupport& support, const PlaneContex
   }
   plane.rms = weight > 0.0 ? std::sqrt(sum / weight) : 0.0;
   plane.inliers = static_cast<int>(support.landmarks.size());
-  plane.weak = support.points.size() < strong_support(plane, context.options);
+  plane.weak = support.points.size() < strong_support(plane, context.options) ||
+               static_cast<int>(plane.observers.size()) < least_observers(plane, context);
 }
 
 void add_depth_point(Plane& plane, KeyframeId keyframe, const Eigen::Vector3d& position,

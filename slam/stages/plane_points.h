@@ -47,9 +47,19 @@ struct PlaneSupport {
 /// Support of all planes by plane id (empty for ids that are gone), in one pass over the landmarks.
 std::vector<PlaneSupport> gather_support(const Map& map, const PlaneContext& context);
 
+/// Inlier distance of one plane for points of band 1 [D]: three standard deviations, told robustly
+/// by the median, of its support's distances over their bands, between kTightest and 1 times eps_d.
+/// Support that fills a slab evenly keeps eps_d; a plane that is thinner is held to what it is, so
+/// that steps, books and the like beside it stay out.
+double own_eps(const PlaneEquation& plane, const PlanePoints& support, const PlaneScale& scale);
+
 /// Support below which the plane is weak. [D] Twice the option for one that was found without a
 /// mask and so has no second witness.
 int strong_support(const Plane& plane, const PlaneMappingOptions& options);
+
+/// Keyframes that must have seen a plane before it is more than weak. [D] One view of a monocular
+/// map is no evidence: its landmarks' errors run along the same rays.
+int least_observers(const Plane& plane, const PlaneContext& context);
 
 /// Weighted RMS and landmark count into the plane, whether it is weak, from its support.
 void update_figures(Plane& plane, const PlaneSupport& support, const PlaneContext& context);

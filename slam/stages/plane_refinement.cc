@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kChi2Pixel = 5.991;  ///< 95 %, 2 degrees of freedom
 constexpr double kChi2Depth = 7.815;  ///< 95 %, 3 degrees of freedom
+constexpr double kChi2Move = 3.841;   ///< 95 %, 1 degree of freedom
 /// Share of a plane's landmarks in the keyframe beyond which it is the plane that is wrong, and how
 /// many landmarks it takes to say so.
 constexpr double kPlaneAtFault = 0.4;
@@ -48,27 +49,41 @@ std::vector<LandmarkId> far_members(const Map& map, const Plane& plane,
   return result;
 }
 
-bool passes_reprojection(const Map& map, const Landmark& landmark, const Eigen::Vector3d& position,
-                         const PlaneContext& context) {
+/// Squared residual of one sight over sigma^2, with depth as in PoseOptions; infinite behind it.
+double chi2_of(const Map& map, const Observation& observation, const Eigen::Vector3d& position,
+               const PlaneContext& context) {
   const ScaleLevels levels;
-  constexpr double kDepthBaselineM = 0.08;  // as in PoseOptions
+  constexpr double kDepthBaselineM = 0.08;
+  const Keyframe& keyframe = map.keyframes.at(observation.keyframe);
+  const Keypoint& keypoint = keyframe.features->keypoints[observation.keypoint];
+  const Eigen::Vector3d point_cam = keyframe.cam_from_world * position;
+  if (!(point_cam.z() > 0.0)) return HUGE_VAL;
+  const double sigma = levels.sigma_px(keypoint.octave);
+  double squared =
+      (context.camera.project(point_cam) - keypoint.pixel.cast<double>()).squaredNorm();
+  if (context.rgbd && keypoint.depth > 0.0F) {
+    const double disparity = kDepthBaselineM * std::abs(context.camera.fx) *
+                             (1.0 / point_cam.z() - 1.0 / keypoint.depth);
+    squared += disparity * disparity;
+  }
+  return squared / (sigma * sigma);
+}
+
+/// Whether the landmark's sights allow the move along the normal: each must still pass its test, and
+/// together they may not speak against it, which is a test of one degree of freedom [D]. A point
+/// that many keyframes hold is not dragged off by a plane that is known less well than the point.
+bool sights_allow(const Map& map, const Landmark& landmark, const Eigen::Vector3d& projected,
+                  const PlaneContext& context) {
+  double rise = 0.0;
   for (const Observation& observation : landmark.observations) {
     const Keyframe& keyframe = map.keyframes.at(observation.keyframe);
-    const Keypoint& keypoint = keyframe.features->keypoints[observation.keypoint];
-    const Eigen::Vector3d point_cam = keyframe.cam_from_world * position;
-    if (!(point_cam.z() > 0.0)) return false;
-    const double sigma = levels.sigma_px(keypoint.octave);
-    double chi2 = (context.camera.project(point_cam) - keypoint.pixel.cast<double>()).squaredNorm();
-    double limit = kChi2Pixel;
-    if (context.rgbd && keypoint.depth > 0.0F) {
-      const double disparity = kDepthBaselineM * std::abs(context.camera.fx) *
-                               (1.0 / point_cam.z() - 1.0 / keypoint.depth);
-      chi2 += disparity * disparity;
-      limit = kChi2Depth;
-    }
-    if (chi2 > limit * sigma * sigma) return false;
+    const bool depth =
+        context.rgbd && keyframe.features->keypoints[observation.keypoint].depth > 0.0F;
+    const double after = chi2_of(map, observation, projected, context);
+    if (after > (depth ? kChi2Depth : kChi2Pixel)) return false;
+    rise += after - chi2_of(map, observation, landmark.position, context);
   }
-  return true;
+  return rise < kChi2Move;
 }
 
 }  // namespace
@@ -109,7 +124,7 @@ RefineCounts project_landmarks(Map& map, KeyframeId keyframe, const PlaneContext
     const double distance = plane.signed_distance(landmark.position);
     if (std::abs(distance) > context.scale.eps_d) continue;
     const Eigen::Vector3d projected = landmark.position - distance * plane.normal;
-    if (passes_reprojection(map, landmark, projected, context)) {
+    if (sights_allow(map, landmark, projected, context)) {
       landmark.position = projected;
       ++counts.refined;
     } else {

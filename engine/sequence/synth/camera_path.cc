@@ -36,8 +36,9 @@ Vector3d hermite(const Vector3d& a, const Vector3d& b, const Vector3d& slope_a,
 }  // namespace
 
 CameraPath::CameraPath(std::vector<PathKey> keys, const HandheldOptions& options,
-                       std::uint64_t seed)
+                       std::uint64_t seed, double duration_s)
     : keys_(std::move(keys)), options_(options) {
+  duration_s_ = duration_s > 0.0 ? duration_s : keys_.back().time_s;
   Random random(seed);
   for (Wander& wander : wander_) {
     double variance = 0.0;

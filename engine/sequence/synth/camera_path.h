@@ -30,9 +30,11 @@ struct HandheldOptions {
 class CameraPath {
  public:
   CameraPath() = default;
-  CameraPath(std::vector<PathKey> keys, const HandheldOptions& options, std::uint64_t seed);
+  /// `duration_s`: of the sequence that is made of it unless more is asked for; 0: to the last key.
+  CameraPath(std::vector<PathKey> keys, const HandheldOptions& options, std::uint64_t seed,
+             double duration_s = 0.0);
 
-  double duration_s() const { return keys_.back().time_s; }
+  double duration_s() const { return duration_s_; }
   slam::Pose world_from_cam(double time_s) const;
 
  private:
@@ -47,6 +49,7 @@ class CameraPath {
 
   std::vector<PathKey> keys_;
   HandheldOptions options_;
+  double duration_s_ = 0.0;
   std::array<Wander, 6> wander_;  ///< position x, y, z; yaw, pitch, roll
 };
 

@@ -166,6 +166,27 @@ Scene rotation_start(std::uint64_t seed) {
   return scene;
 }
 
+/// The tabletop in the evening, by its lamps alone: little light, so a long shutter and much noise.
+Scene dark_room(std::uint64_t seed) {
+  static constexpr float kNight = 0.015F;  // of the light that comes in by day
+  Scene scene = tabletop(seed);
+  RoomModel& model = scene.model;
+  for (WindowLight& window : model.windows) window.radiance *= kNight;
+  for (Patch& patch : model.patches) {
+    if (!patch.shines || patch.label == 0) continue;  // lamp shades go on shining
+    const Texture day = patch.texture;
+    patch.texture = [day](float u, float v) -> Color { return kNight * day(u, v); };
+  }
+  model.sun.radiance = Color::Zero();
+  model.ambient = Color(0.05F, 0.045F, 0.04F);
+  model.exposure = 1.3F;
+  scene.effects.noise_sigma = 6.5;
+  scene.effects.vignetting = 0.35;
+  scene.effects.exposure_drift = 0.12;
+  scene.effects.shutter_s = 0.020;
+  return scene;
+}
+
 /// The tabletop with the lens covered for a second and a half.
 Scene tracking_loss(std::uint64_t seed) {
   Scene scene = tabletop(seed);

@@ -36,5 +36,10 @@ Scene tabletop(std::uint64_t seed);
 Scene room(std::uint64_t seed);
 Scene rotation_start(std::uint64_t seed);
 Scene tracking_loss(std::uint64_t seed);
+Scene dark_room(std::uint64_t seed);
+
+/// The scenes that come back to where they began.
+Scene ring_corridor(std::uint64_t seed);
+Scene revisited_room(std::uint64_t seed);
 
 }  // namespace planecast::engine::synth

@@ -255,6 +255,9 @@ constexpr NamedScene kScenes[] = {
     {"stair", stair},
     {"rotation-start", rotation_start},
     {"tracking-loss", tracking_loss},
+    {"dark-room", dark_room},
+    {"ring", ring_corridor},
+    {"revisit", revisited_room},
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/sequence/synth/camera_effects.h"
 #include "engine/sequence/synth/camera_path.h"
 #include "engine/sequence/synth/room_model.h"
 
@@ -16,6 +17,7 @@ struct Scene {
   RoomModel model;
   CameraPath path;
   std::vector<std::pair<double, double>> covered_s;  ///< times while a hand hides the lens
+  EffectOptions effects;                             ///< of the camera, where they are wanted
 };
 
 /// All names, the demo's first.

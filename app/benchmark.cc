@@ -1,0 +1,85 @@
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/commands.h"
+#include "app/options.h"
+#include "engine/benchmark/config.h"
+#include "engine/benchmark/report_files.h"
+#include "engine/benchmark/runner.h"
+#include "engine/output/atomic_file.h"
+
+namespace planecast::app {
+namespace {
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+struct BenchmarkCommand {
+  bool quiet = false;
+  std::string config;
+  int seeds = 0;  ///< 0: as the configuration says
+  engine::BenchmarkOptions options;
+
+  int run() {
+    const Console console(quiet ? Verbosity::kQuiet : Verbosity::kNormal, false);
+    const engine::BenchmarkConfig plan = engine::read_benchmark_config(config);
+    for (int seed = 1; seed <= seeds; ++seed) {
+      options.seeds.push_back(static_cast<std::uint64_t>(seed));
+    }
+    engine::make_folder(options.output);
+    engine::BenchmarkRunner runner(
+        plan, options, [&console](int done, int total, const std::string& line) {
+          console.info("[" + std::to_string(done) + "/" + std::to_string(total) + "] " + line);
+        });
+    const std::vector<engine::BenchmarkRow> rows = runner.run();
+    engine::write_benchmark_report(plan, rows, runner, facts(plan), options.output);
+    console.result((options.output / "results.md").string());
+    const bool failed = std::any_of(rows.begin(), rows.end(), [](const engine::BenchmarkRow& row) {
+      return !row.usable() && row.status != "not present";
+    });
+    return failed ? kPoorResult : kDone;
+  }
+
+ private:
+  std::vector<std::string> facts(const engine::BenchmarkConfig& plan) const {
+    const std::size_t count = options.seeds.empty() ? plan.seeds.size() : options.seeds.size();
+    std::vector<std::string> lines = {
+        std::string("planecast ") + kVersion + " on " + engine::processor_name(),
+        count == 1 ? std::string("one seed; a cell is its figure")
+                   : std::to_string(count) + " seeds; a cell is the median (mean, worst)"};
+    if (!plan.options.empty()) lines.push_back("`track` with " + joined(plan.options));
+    return lines;
+  }
+};
+
+}  // namespace
+
+void add_benchmark(CLI::App& app, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("benchmark", "Track many sequences and print tables of the figures");
+  auto options = std::make_shared<BenchmarkCommand>();
+  command->add_option("config", options->config, "Configuration, YAML (see assets/benchmark)")
+      ->required();
+  command
+      ->add_option("-o,--output", options->options.output,
+                   "Folder for runs, results.md, results.csv and plots")
+      ->required();
+  command->add_option("--cache", options->options.cache,
+                      "Folder of made sequences (default: below the output)");
+  command->add_option("--only", options->options.only, "Names of the sequences to run");
+  command->add_option("--seeds", options->seeds, "Seeds 1 to N instead of the configuration's")
+      ->check(CLI::Range(1, 100));
+  command->add_flag("--resume", options->options.resume,
+                    "Keep the runs that are complete with the same arguments");
+  command->add_flag("--quiet", options->quiet, "Print results and errors alone");
+  command->callback([options, &action] { action = [options] { return options->run(); }; });
+}
+
+}  // namespace planecast::app

@@ -1,0 +1,303 @@
+#include "slam/stages/search_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "slam/features/place_points.h"
+#include "slam/features/pyramid.h"
+#include "slam/features/warp_patch.h"
+#include "slam/geometry/change_of_view.h"
+#include "slam/geometry/lens.h"
+#include "slam/segmentation/plane_segmenter.h"
+#include "slam/stages/prepare_image.h"
+
+namespace planecast::slam {
+namespace {
+
+/// Steps along an epipolar line, in pixels of the level: a patch's correlation falls over about
+/// two.
+constexpr double kStepPx = 0.7;
+/// Correlations so near to the best place, in steps, belong to the same peak.
+constexpr int kPeakSteps = 4;
+/// How far alignment may lead from the best step, in pixels of the level.
+constexpr float kMaxSettlePx = 2.0F;
+
+struct InverseDepths {
+  double least = 0.0;
+  double median = 0.0;
+  double most = 0.0;
+};
+
+/// A keypoint of a neighbour that was found in the new keyframe.
+struct Sighting {
+  std::vector<Observation> seen;  ///< by the neighbours, the first of which gave the position
+  FoundPoint point;
+  Eigen::Vector3d position;  ///< world
+};
+
+std::optional<InverseDepths> depth_range(const Map& map, const Keyframe& keyframe,
+                                         const SearchPointsOptions& options) {
+  std::vector<double> depths;
+  for (const LandmarkId id : keyframe.landmarks) {
+    if (id == kNone) continue;
+    const double z = (keyframe.cam_from_world * map.landmarks.at(id).position).z();
+    if (z > 0.0) depths.push_back(z);
+  }
+  if (depths.size() < 10) return std::nullopt;
+  std::sort(depths.begin(), depths.end());
+  const std::size_t tail = depths.size() / 20;
+  return InverseDepths{1.0 / (options.farthest_depth * depths[depths.size() - 1 - tail]),
+                       1.0 / depths[depths.size() / 2],
+                       1.0 / (options.nearest_depth * depths[tail])};
+}
+
+/// Keypoints without a landmark, strongest first.
+std::vector<int> free_keypoints(const Keyframe& keyframe, int most) {
+  std::vector<int> keypoints;
+  for (int k = 0; k < keyframe.features->size(); ++k) {
+    if (keyframe.landmarks[static_cast<std::size_t>(k)] == kNone) keypoints.push_back(k);
+  }
+  std::stable_sort(keypoints.begin(), keypoints.end(), [&](int a, int b) {
+    return keyframe.features->keypoints[static_cast<std::size_t>(a)].response >
+           keyframe.features->keypoints[static_cast<std::size_t>(b)].response;
+  });
+  if (static_cast<int>(keypoints.size()) > most) keypoints.resize(static_cast<std::size_t>(most));
+  return keypoints;
+}
+
+/// The search of one neighbour's keypoints in the new keyframe.
+class EpipolarSearch {
+ public:
+  EpipolarSearch(const Camera& camera, const Keyframe& neighbour, const Keyframe& keyframe,
+                 const InverseDepths& range, const SearchPointsOptions& options)
+      : camera_(camera),
+        neighbour_(neighbour),
+        keyframe_(keyframe),
+        range_(range),
+        options_(options),
+        cam_from_neighbour_(keyframe.cam_from_world * neighbour.cam_from_world.inverse()) {}
+
+  std::optional<Sighting> find(int k) {
+    const Keypoint& keypoint = neighbour_.features->keypoints[static_cast<std::size_t>(k)];
+    const Eigen::Vector3d ray = camera_.ray(keypoint.pixel.cast<double>());
+    const Eigen::Vector3d middle = ray / range_.median;
+    const auto view =
+        change_of_view(camera_, middle, Eigen::Vector3d::UnitZ(), cam_from_neighbour_);
+    if (!view) return std::nullopt;
+    std::optional<Line> line = line_of(ray);
+    if (!line) return std::nullopt;
+    const double reach = kStepPx * options_.max_steps *
+                         options_.points.levels.scale(keypoint.octave) *
+                         (1 << options_.coarser_levels);
+    line->shorten(reach);
+    // A long line is searched at a coarser level, and the place then followed to the finer ones.
+    std::optional<Eigen::Vector2f> raw;
+    for (int coarser = coarser_levels(*line, keypoint); coarser >= 0; --coarser) {
+      const auto patch = warp_patch(*neighbour_.pyramid, keypoint, *view, *keyframe_.pyramid,
+                                    options_.points.levels, coarser);
+      if (!patch) return std::nullopt;
+      if (!raw) raw = search(*line, *patch);
+      if (!raw) return std::nullopt;
+      PatchAlignOptions align;
+      align.max_shift_px = kMaxSettlePx;
+      const auto settled =
+          align_patch(patch->looks, level_of(*patch), at_level(*raw, patch->level), align);
+      if (!settled || settled->correlation < options_.min_correlation) return std::nullopt;
+      raw = from_level(settled->pixel, patch->level);
+    }
+    return sighting(k, keypoint, *raw);
+  }
+
+ private:
+  const cv::Mat& level_of(const WarpedPatch& patch) const {
+    return keyframe_.pyramid->levels[static_cast<std::size_t>(patch.level)];
+  }
+
+  /// Undistorted pixels between which a keypoint's point lies in the new keyframe.
+  struct Line {
+    Eigen::Vector2d begin;   ///< of the farthest depth
+    Eigen::Vector2d middle;  ///< of the median depth
+    Eigen::Vector2d end;     ///< of the nearest
+    double length() const { return (end - begin).norm(); }
+    /// Cuts off what is farther than half of `longest` from the middle.
+    void shorten(double longest) {
+      if (length() <= longest) return;
+      const Eigen::Vector2d along = (end - begin).normalized();
+      const double before = std::min((middle - begin).norm(), longest / 2.0);
+      const double after = std::min((end - middle).norm(), longest / 2.0);
+      begin = middle - before * along;
+      end = middle + after * along;
+    }
+  };
+
+  std::optional<Line> line_of(const Eigen::Vector3d& ray) const {
+    const Eigen::Vector3d turned = cam_from_neighbour_.linear() * ray;
+    const Eigen::Vector3d& shift = cam_from_neighbour_.translation();
+    const Eigen::Vector3d far_point = turned + range_.least * shift;
+    const Eigen::Vector3d middle = turned + range_.median * shift;
+    Eigen::Vector3d near_point = turned + range_.most * shift;
+    constexpr double kMinZ = 0.05;  // of the ray's length: in front of the camera
+    if (!(far_point.z() > kMinZ && middle.z() > kMinZ)) return std::nullopt;
+    if (near_point.z() < kMinZ) near_point = turned + (kMinZ - turned.z()) / shift.z() * shift;
+    return Line{camera_.project(far_point), camera_.project(middle), camera_.project(near_point)};
+  }
+
+  /// Levels above the keypoint's own at which the line is short enough.
+  int coarser_levels(const Line& line, const Keypoint& keypoint) const {
+    double steps = line.length() / (kStepPx * options_.points.levels.scale(keypoint.octave));
+    int coarser = 0;
+    for (; coarser < options_.coarser_levels && steps > options_.max_steps; ++coarser) steps /= 2.0;
+    return coarser;
+  }
+
+  /// Raw pixel of the best correlation along the line.
+  std::optional<Eigen::Vector2f> search(const Line& line, const WarpedPatch& patch) {
+    const double length = line.length() / (1 << patch.level);
+    const int steps = static_cast<int>(std::ceil(length / kStepPx)) + 1;
+    places_.clear();
+    scores_.clear();
+    for (int s = 0; s <= steps; ++s) {
+      const Eigen::Vector2d pixel =
+          line.begin + (line.end - line.begin) * (static_cast<double>(s) / steps);
+      if (!camera_.contains(pixel)) continue;
+      const Eigen::Vector2d raw = camera_.has_distortion() ? camera_.distort(pixel) : pixel;
+      places_.push_back(raw.cast<float>());
+      scores_.push_back(
+          correlate(patch.looks, level_of(patch), at_level(places_.back(), patch.level)));
+    }
+    return unambiguous_best();
+  }
+
+  std::optional<Eigen::Vector2f> unambiguous_best() const {
+    if (scores_.empty()) return std::nullopt;
+    const auto best = std::max_element(scores_.begin(), scores_.end());
+    // A step beside the place, the correlation is a little less than settled.
+    constexpr double kBesideShare = 0.85;
+    if (*best < kBesideShare * options_.min_correlation) return std::nullopt;
+    const auto at = best - scores_.begin();
+    for (std::ptrdiff_t s = 0; s < static_cast<std::ptrdiff_t>(scores_.size()); ++s) {
+      if (std::abs(s - at) > kPeakSteps &&
+          scores_[static_cast<std::size_t>(s)] >
+              options_.max_runner_up * static_cast<double>(*best)) {
+        return std::nullopt;
+      }
+    }
+    return places_[static_cast<std::size_t>(at)];
+  }
+
+  std::optional<Sighting> sighting(int k, const Keypoint& keypoint,
+                                   const Eigen::Vector2f& raw) const {
+    Keypoint seen = keypoint;
+    seen.raw = raw;
+    seen.pixel = camera_.undistort(raw.cast<double>()).cast<float>();
+    const auto position =
+        point_from_two(camera_, keyframe_, seen, neighbour_, keypoint, options_.points);
+    if (!position) return std::nullopt;
+    Sighting result;
+    result.seen = {{neighbour_.id, k}};
+    result.point.raw = seen.raw;
+    result.point.pixel = seen.pixel.cast<double>();
+    result.point.octave = keypoint.octave;
+    result.point.descriptor = neighbour_.features->descriptors[static_cast<std::size_t>(k)];
+    result.position = *position;
+    return result;
+  }
+
+  const Camera& camera_;
+  const Keyframe& neighbour_;
+  const Keyframe& keyframe_;
+  const InverseDepths& range_;
+  const SearchPointsOptions& options_;
+  Pose cam_from_neighbour_;
+  std::vector<Eigen::Vector2f> places_;
+  std::vector<float> scores_;
+};
+
+/// Adds a sighting; one at the place of an earlier one, of another neighbour, is the same point.
+void add_sighting(Sighting sighting, std::vector<Sighting>& sightings) {
+  constexpr float kSamePx = 1.0F;
+  const KeyframeId neighbour = sighting.seen.front().keyframe;
+  for (Sighting& earlier : sightings) {
+    if ((earlier.point.raw - sighting.point.raw).squaredNorm() > kSamePx * kSamePx) continue;
+    const bool other = std::none_of(earlier.seen.begin(), earlier.seen.end(),
+                                    [&](const auto& seen) { return seen.keyframe == neighbour; });
+    if (other) earlier.seen.push_back(sighting.seen.front());
+    return;
+  }
+  sightings.push_back(std::move(sighting));
+}
+
+/// Keypoints for the sightings; those that hold a landmark already are not used again.
+std::vector<int> add_keypoints(const std::vector<Sighting>& sightings, const Camera& camera,
+                               double max_keypoint_depth_m, const SearchPointsOptions& options,
+                               OrbExtractor& extractor, Keyframe& keyframe) {
+  Features features = *keyframe.features;
+  std::vector<char> taken(keyframe.landmarks.size());
+  for (std::size_t k = 0; k < taken.size(); ++k) taken[k] = keyframe.landmarks[k] != kNone ? 1 : 0;
+  std::vector<FoundPoint> points;
+  for (const Sighting& sighting : sightings) points.push_back(sighting.point);
+  extractor.set_image(keyframe.pyramid->levels.front());
+  std::vector<int> placed = place_points(points, camera, options.snap_px, options.points.levels,
+                                         extractor, taken, features);
+  keyframe.landmarks.resize(features.keypoints.size(), kNone);
+  keyframe.labels.resize(features.keypoints.size(), 0);
+  for (const int k : placed) {
+    if (k == kNone) continue;
+    Keypoint& keypoint = features.keypoints[static_cast<std::size_t>(k)];
+    if (!keyframe.depth.empty()) {
+      keypoint.depth = depth_at(keyframe.depth, keypoint.raw, max_keypoint_depth_m);
+    }
+    if (!keyframe.label_image.empty()) {
+      keyframe.labels[static_cast<std::size_t>(k)] = label_at(keyframe.label_image, keypoint.raw);
+    }
+  }
+  keyframe.features = std::make_shared<const Features>(std::move(features));
+  return placed;
+}
+
+}  // namespace
+
+void search_points(Map& map, KeyframeId id, const Camera& camera, const cv::Mat& image,
+                   double max_keypoint_depth_m, const SearchPointsOptions& options,
+                   OrbExtractor& extractor, PointMappingStats& stats) {
+  std::vector<Sighting> sightings;
+  const Keyframe& keyframe = map.keyframes.at(id);
+  int searched = 0;
+  for (const KeyframeId neighbour_id : best_neighbours(map, id, 20)) {
+    const Keyframe& neighbour = map.keyframes.at(neighbour_id);
+    if (neighbour.pyramid == nullptr || keyframe.pyramid == nullptr ||
+        !wide_enough(map, keyframe, neighbour, false, options.points)) {
+      continue;
+    }
+    const auto range = depth_range(map, neighbour, options);
+    if (!range) continue;
+    EpipolarSearch search(camera, neighbour, keyframe, *range, options);
+    for (const int k : free_keypoints(neighbour, options.max_points)) {
+      if (auto sighting = search.find(k)) add_sighting(std::move(*sighting), sightings);
+    }
+    if (++searched == options.neighbours) break;
+  }
+  if (sightings.empty()) return;
+  const std::vector<int> placed = add_keypoints(sightings, camera, max_keypoint_depth_m, options,
+                                                extractor, map.keyframes.at(id));
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    if (placed[i] == kNone) continue;
+    const Sighting& sighting = sightings[i];
+    const Keypoint& keypoint =
+        map.keyframes.at(id).features->keypoints[static_cast<std::size_t>(placed[i])];
+    const LandmarkId landmark = put_landmark(map, sighting.position, id, image, keypoint);
+    map.add_observation(landmark, id, placed[i]);
+    for (const Observation& seen : sighting.seen) {
+      map.add_observation(landmark, seen.keyframe, seen.keypoint);
+    }
+    map.update_landmark_summary(landmark, options.points.levels);
+    ++stats.triangulated;
+  }
+}
+
+}  // namespace planecast::slam

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "slam/data/camera.h"
+#include "slam/data/map.h"
+#include "slam/features/orb.h"
+#include "slam/stages/map_points.h"
+
+namespace planecast::slam {
+
+struct SearchPointsOptions {
+  int neighbours = 4;           ///< keyframes whose keypoints are looked for
+  int max_points = 400;         ///< keypoints of a keyframe that are looked for, strongest first
+  double nearest_depth = 0.5;   ///< of the 5th percentile of the keyframe's depths
+  double farthest_depth = 2.0;  ///< of the 95th
+  int max_steps = 50;           ///< along an epipolar line, at the level where it is searched
+  int coarser_levels = 2;       ///< above a keypoint's own at which a long line may be searched
+  double min_correlation = 0.8;
+  double max_runner_up = 0.9;  ///< correlation elsewhere on the line, as a share of the best
+  double snap_px = 2.0;        ///< as in DescribeKeyframeOptions
+  PointMappingOptions points;
+};
+
+/// New landmarks of `keyframe` by the looks of its neighbours' keypoints: the surroundings of each
+/// one without a landmark are searched along its epipolar line in the new keyframe, between depths
+/// that the neighbour's landmarks suggest, and aligned to a fraction of a pixel. Needs no detector
+/// to fire twice at one place, so that it works where noise or blur make it fail. The keyframe gets
+/// keypoints for what was found, with depth from its depth image where it has one. Precondition:
+/// nobody else holds the keyframe's features for what they were, and its image pyramid is there.
+/// `image` gives the colours.
+void search_points(Map& map, KeyframeId keyframe, const Camera& camera, const cv::Mat& image,
+                   double max_keypoint_depth_m, const SearchPointsOptions& options,
+                   OrbExtractor& extractor, PointMappingStats& stats);
+
+}  // namespace planecast::slam
