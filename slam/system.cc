@@ -94,6 +94,13 @@ ImageFeatures System::prepare(const FrameInput& frame, bool initialised) const {
   return image;
 }
 
+void System::load(Map map) {
+  working_map_ = std::move(map);
+  if (options_.vocabulary != nullptr) describe_keyframes(working_map_, *options_.vocabulary);
+  visible_map_ = std::make_shared<const Map>(working_map_);
+  loaded_ = true;
+}
+
 void System::restart() {
   FrameTrack ignored;
   take_over_all(ignored);
@@ -165,16 +172,16 @@ void System::enqueue(int frame_index, int visible_at, MapJob job) {
   if (!in_flight_.empty()) {
     flight.visible_at = std::max(flight.visible_at, in_flight_.back().visible_at + 1);
   }
-  flight.result =
-      std::async(options_.threads > 1 ? std::launch::async : std::launch::deferred,
-                 [this, earlier, job = std::move(job)]() mutable {
-                   // Let go of it, or each result would hold all before it, with their maps.
-                   if (earlier.valid()) std::exchange(earlier, {}).wait();
-                   Mapped mapped = job();
-                   mapped.map = std::make_shared<const Map>(working_map_);
-                   return mapped;
-                 })
-          .share();
+  flight.result = std::async(options_.threads > 1 ? std::launch::async : std::launch::deferred,
+                             [this, earlier, job = std::move(job)]() mutable {
+                               // Let go of it, or each result would hold all before it, with their
+                               // maps.
+                               if (earlier.valid()) std::exchange(earlier, {}).wait();
+                               Mapped mapped = job();
+                               mapped.map = std::make_shared<const Map>(working_map_);
+                               return mapped;
+                             })
+                      .share();
   in_flight_.push_back(std::move(flight));
 }
 
@@ -253,7 +260,7 @@ FrameTrack System::track(ImageFeatures image) {
   take_over_due(image.frame_index, result);
   enqueue_open_loop(image.frame_index);
   take_over_due(image.frame_index, result);
-  if (lost_frames_ >= options_.restart_after_lost &&
+  if (!loaded_ && lost_frames_ >= options_.restart_after_lost &&
       static_cast<int>(map().keyframes.size()) < options_.restart_keyframes) {
     restart();
     result.restarted = true;
