@@ -2,11 +2,13 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "slam/data/camera.h"
+#include "slam/data/map.h"
 #include "slam/data/types.h"
 
 namespace planecast::engine {
@@ -81,6 +83,7 @@ struct Reconstruction {
   std::vector<StageTimes> frame_times;                       ///< per frame
   std::map<std::string, std::vector<double>> mapping_times;  ///< per keyframe and stage
   std::vector<std::string> warnings;
+  std::shared_ptr<const slam::Map> map;  ///< what map.bin needs to go on from; may be null
 };
 
 }  // namespace planecast::engine
