@@ -134,7 +134,8 @@ std::string ablation_table(const BenchmarkConfig& config, const std::vector<Resu
   if (!filled) return "";
   return table.str() + fmt::format(
                            "\nRatios to *{}*: geometric mean over the sequences where both "
-                           "have the figure; below 1 is better.\n",
+                           "have the figure; below 1 is better. Drift is that of the planes which "
+                           "each variant found.\n",
                            first->name);
 }
 

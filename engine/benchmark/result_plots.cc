@@ -91,8 +91,9 @@ std::string ate_bars_svg(const std::vector<ResultGroup>& groups) {
       const double worst = kLeft + scale * std::min(ate.worst, most);
       svg.rect(kLeft, y, end - kLeft, kBar - 1.5, series_color(series));
       if (worst > end) svg.line(end, y + 0.5 * kBar, worst, y + 0.5 * kBar, "#222");
-      svg.text(worst + 5.0, y + 0.5 * kBar + 3.5, fmt::format("{:.2f}", ate.median), Anchor::kStart,
-               10.0, "#555");
+      svg.text(worst + 5.0, y + 0.5 * kBar + 3.5,
+               fmt::format("{:.2f}{}", ate.median, ate.worst > most ? " (cut)" : ""),
+               Anchor::kStart, 10.0, "#555");
       y += kBar;
     }
     y += kGap;
