@@ -54,6 +54,13 @@ struct MapPoint {
   int plane = slam::kNone;
 };
 
+/// Root mean square distance of landmarks from the plane that owns them, map units, before and after
+/// the final joint refinement.
+struct PointPlaneRms {
+  double before = 0.0;
+  double after = 0.0;
+};
+
 /// Milliseconds of one frame by stage name, in the order of the stages.
 using StageTimes = std::vector<std::pair<std::string, double>>;
 
@@ -70,6 +77,7 @@ struct Reconstruction {
   std::vector<MapPoint> points;
   Eigen::Vector3d up = -Eigen::Vector3d::UnitY();  ///< unit, world
   double up_confidence = 0.0;
+  std::optional<PointPlaneRms> point_plane_rms;    ///< where planes were refined
   std::vector<StageTimes> frame_times;             ///< per frame
   std::map<std::string, std::vector<double>> mapping_times;  ///< per keyframe and stage
   std::vector<std::string> warnings;

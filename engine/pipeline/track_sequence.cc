@@ -139,8 +139,11 @@ class TwoPassTracker {
 
   Reconstruction run() {
     first_pass();
-    for (const auto& [stage, ms] : system_.finish().mapping_times) {
-      mapping_times_[stage].push_back(ms);
+    const slam::FinishResult finished = system_.finish();
+    for (const auto& [stage, ms] : finished.mapping_times) mapping_times_[stage].push_back(ms);
+    if (finished.joint.kept) {
+      point_plane_rms_ =
+          PointPlaneRms{finished.joint.plane_rms_before, finished.joint.plane_rms_after};
     }
     take_over_references();
     if (!options_.causal) second_pass();
@@ -169,6 +172,7 @@ class TwoPassTracker {
   std::vector<Tracked> tracked_;
   std::vector<StageTimes> times_;
   std::map<std::string, std::vector<double>> mapping_times_;
+  std::optional<PointPlaneRms> point_plane_rms_;
 };
 
 void TwoPassTracker::record_first(int position, const slam::FrameTrack& track) {
@@ -291,6 +295,7 @@ Reconstruction TwoPassTracker::records() {
   result.frames = std::move(frames_);
   result.frame_times = std::move(times_);
   result.mapping_times = std::move(mapping_times_);
+  result.point_plane_rms = point_plane_rms_;
   result.warnings = sequence_.warnings();
   for (FrameRecord& record : result.frames) {
     if (record.world_from_cam) record.reason.clear();
