@@ -4,6 +4,7 @@
 
 #include "app/commands.h"
 #include "app/options.h"
+#include "engine/evaluate/masks.h"
 #include "engine/evaluate/overlay.h"
 #include "engine/evaluate/planes.h"
 #include "engine/evaluate/trajectory.h"
@@ -30,10 +31,13 @@ struct EvaluateCommand {
   int trajectory() const;
   int planes() const;
   int overlay() const;
+  int masks() const;
 
  private:
   template <typename Result>
   int print(const std::optional<Result>& result) const;
+  template <typename Result>
+  int print_found(const Result& result) const;
   engine::TrajectoryOptions alignment(bool metric) const;
 };
 
@@ -50,11 +54,16 @@ int EvaluateCommand::print(const std::optional<Result>& result) const {
     throw engine::UserError(groundtruth +
                             ": fewer than 3 poses of the estimate have a counterpart in time");
   }
+  return print_found(*result);
+}
+
+template <typename Result>
+int EvaluateCommand::print_found(const Result& result) const {
   const Console console = common.console();
-  std::string table = engine::format_table(*result);
+  std::string table = engine::format_table(result);
   while (!table.empty() && table.back() == '\n') table.pop_back();
   console.result(table);
-  if (!json.empty()) engine::write_file(json, engine::to_json(*result).dump(2) + "\n");
+  if (!json.empty()) engine::write_file(json, engine::to_json(result).dump(2) + "\n");
   return kDone;
 }
 
@@ -88,12 +97,32 @@ int EvaluateCommand::overlay() const {
   return print(engine::evaluate_overlay(map, truth.planes, truth.poses, truth.camera, options));
 }
 
+int EvaluateCommand::masks() const {
+  const auto truth = engine::open_sequence(groundtruth, {});
+  return print_found(engine::evaluate_masks(estimate, *truth));
+}
+
+void add_json_option(CLI::App& command, EvaluateCommand& options) {
+  command.add_option("--json", options.json, "Write the figures to this file too");
+}
+
 void add_shared_options(CLI::App& command, EvaluateCommand& options) {
   command
       .add_option("--align", options.align, "se3 or sim3 (default: sim3, or se3 for metric maps)")
       ->check(CLI::IsMember({"se3", "sim3"}));
-  command.add_option("--json", options.json, "Write the figures to this file too");
+  add_json_option(command, options);
   add_common_options(command, options.common);
+}
+
+void add_masks_command(CLI::App& evaluate, std::shared_ptr<EvaluateCommand> options,
+                       Action& action) {
+  CLI::App* masks = evaluate.add_subcommand("masks", "Plane instance masks");
+  masks->add_option("--estimate", options->estimate, "Folder with mask.txt, as `segment` writes it")
+      ->required();
+  masks->add_option("--groundtruth", options->groundtruth, "Sequence with true masks")->required();
+  add_json_option(*masks, *options);
+  add_common_options(*masks, options->common);
+  masks->callback([options, &action] { action = [options] { return options->masks(); }; });
 }
 
 }  // namespace
@@ -130,6 +159,7 @@ void add_evaluate(CLI::App& app, Action& action) {
   add_map_command("planes", "Planes found, missed and wrong", &EvaluateCommand::planes);
   add_map_command("overlay", "Drift and jitter of content in pixels", &EvaluateCommand::overlay)
       ->add_flag("--causal", options->causal, "Judge the poses as they were known at their frames");
+  add_masks_command(*command, options, action);
 }
 
 }  // namespace planecast::app

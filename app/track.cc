@@ -13,10 +13,12 @@ struct TrackCommand {
   InputOptions input;
   TrackingOptions tracking;
   std::string output;
+  std::string map;
 
   int run() const {
     const Console console = common.console();
-    const engine::TrackSequenceOptions options = tracking.resolve(common, input);
+    engine::TrackSequenceOptions options = tracking.resolve(common, input);
+    options.map = map;
     const std::unique_ptr<engine::Sequence> sequence = input.open();
     engine::make_folder(output);
     const engine::Reconstruction reconstruction = track_with_progress(*sequence, options, console);
@@ -36,6 +38,8 @@ void add_track(CLI::App& app, Action& action) {
   auto options = std::make_shared<TrackCommand>();
   add_input_options(*command, options->input);
   command->add_option("-o,--output", options->output, "Reconstruction folder to write")->required();
+  command->add_option("--map", options->map,
+                      "Earlier reconstruction of the place to localise in and go on from");
   add_tracking_options(*command, options->tracking);
   add_common_options(*command, options->common);
   command->callback([options, &action] { action = [options] { return options->run(); }; });

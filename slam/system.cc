@@ -26,10 +26,9 @@ SystemOptions with_common_values(SystemOptions options) {
   options.initialise.features = options.initial_features;
   options.initialise.by_patches = options.track.front_end == FrontEnd::kPatches;
   if (options.initialise.by_patches) {
-    // Followed corners are good to a fifth of a pixel, so that half the parallax tells depth as well
-    // as twice as much does with whole-pixel features.
-    options.initialise.two_view.sigma_px = 0.5;
-    options.initialise.two_view.min_parallax_deg = 0.5;
+    // Followed corners are good to a fraction of a pixel, so that less parallax tells as much.
+    options.initialise.two_view.sigma_px = 0.3;
+    options.initialise.two_view.min_parallax_deg = 0.4;
   }
   options.initialise.seed = options.seed;
   options.track.localise.levels = levels;
@@ -93,6 +92,13 @@ ImageFeatures System::prepare(const FrameInput& frame, bool initialised) const {
         image, initialised || options_.rgbd ? options_.orb.features : options_.initial_features);
   }
   return image;
+}
+
+void System::load(Map map) {
+  working_map_ = std::move(map);
+  if (options_.vocabulary != nullptr) describe_keyframes(working_map_, *options_.vocabulary);
+  visible_map_ = std::make_shared<const Map>(working_map_);
+  loaded_ = true;
 }
 
 void System::restart() {
@@ -166,16 +172,16 @@ void System::enqueue(int frame_index, int visible_at, MapJob job) {
   if (!in_flight_.empty()) {
     flight.visible_at = std::max(flight.visible_at, in_flight_.back().visible_at + 1);
   }
-  flight.result =
-      std::async(options_.threads > 1 ? std::launch::async : std::launch::deferred,
-                 [this, earlier, job = std::move(job)]() mutable {
-                   // Let go of it, or each result would hold all before it, with their maps.
-                   if (earlier.valid()) std::exchange(earlier, {}).wait();
-                   Mapped mapped = job();
-                   mapped.map = std::make_shared<const Map>(working_map_);
-                   return mapped;
-                 })
-          .share();
+  flight.result = std::async(options_.threads > 1 ? std::launch::async : std::launch::deferred,
+                             [this, earlier, job = std::move(job)]() mutable {
+                               // Let go of it, or each result would hold all before it, with their
+                               // maps.
+                               if (earlier.valid()) std::exchange(earlier, {}).wait();
+                               Mapped mapped = job();
+                               mapped.map = std::make_shared<const Map>(working_map_);
+                               return mapped;
+                             })
+                      .share();
   in_flight_.push_back(std::move(flight));
 }
 
@@ -254,7 +260,7 @@ FrameTrack System::track(ImageFeatures image) {
   take_over_due(image.frame_index, result);
   enqueue_open_loop(image.frame_index);
   take_over_due(image.frame_index, result);
-  if (lost_frames_ >= options_.restart_after_lost &&
+  if (!loaded_ && lost_frames_ >= options_.restart_after_lost &&
       static_cast<int>(map().keyframes.size()) < options_.restart_keyframes) {
     restart();
     result.restarted = true;

@@ -26,8 +26,8 @@ struct SystemOptions {
   bool rgbd = false;
   std::uint64_t seed = 1;
   int threads = 2;  ///< 1: mapping runs inline, on the same schedule and with the same results
-  int mapping_delay = 4;  ///< frames after which a keyframe's result is visible; 0 = lock-step
-  int loop_delay = 30;    ///< frames after a loop's keyframe until the closed loop is visible
+  int mapping_delay = 4;    ///< frames after which a keyframe's result is visible; 0 = lock-step
+  int loop_delay = 30;      ///< frames after a loop's keyframe until the closed loop is visible
   bool close_loops = true;  ///< needs the vocabulary
   std::shared_ptr<const Vocabulary> vocabulary;  ///< for place recognition; may be null
   OrbOptions orb;
@@ -80,6 +80,10 @@ class System {
   System(const SystemOptions& options, const Camera& camera,
          std::unique_ptr<PlaneSegmenter> segmenter);
   ~System();
+
+  /// Starts from an earlier map of the same camera instead of an empty one: the first frames are
+  /// relocalised in it and mapping goes on from there. Before the first frame.
+  void load(Map map);
 
   /// What tracking needs of a frame: its pyramid, and features where the front end or the start of
   /// the map wants them (more before it is `initialised`). May run on another thread than track(),
@@ -148,6 +152,7 @@ class System {
   std::optional<OpenLoop> open_loop_;
   KeyframeJob next_job_;  ///< gathers the counters for it
   int lost_frames_ = 0;
+  bool loaded_ = false;  ///< the map came from elsewhere and is never thrown away
 };
 
 }  // namespace planecast::slam

@@ -145,19 +145,22 @@ void add_stage_times(const std::filesystem::path& folder, Metrics& metrics) {
   for (const nlohmann::json& row : timings["rows"]) {
     if (row.value("count", 0) == 0) continue;
     const std::string name = row.value("name", "");
-    metrics["mean_ms:" + name] = row.value("mean", 0.0);
-    metrics["median_ms:" + name] = row.value("median", 0.0);
+    metrics[kMeanTimePrefix + name] = row.value("mean", 0.0);
+    metrics[kMedianTimePrefix + name] = row.value("median", 0.0);
   }
 }
 
-/// Distances of the points to their planes before and after the refinement, where it was recorded.
+/// Distances of the points to their planes before and after the joint refinement, where it was
+/// recorded; in centimetres by the scale that the alignment found.
 void add_plane_rms(const std::filesystem::path& folder, Metrics& metrics) {
+  if (metrics.count("scale") == 0) return;
   const nlohmann::json summary = read_json(folder / "summary.json");
   if (!summary.is_object() || !summary.contains("point_plane_rms")) return;
   const nlohmann::json& rms = summary["point_plane_rms"];
   if (!rms.is_object()) return;
-  metrics["plane_rms_before"] = rms.value("before", 0.0);
-  metrics["plane_rms_after"] = rms.value("after", 0.0);
+  const double unit_cm = kCentimetres * metrics["scale"];
+  metrics["plane_rms_before_cm"] = unit_cm * rms.value("before", 0.0);
+  metrics["plane_rms_after_cm"] = unit_cm * rms.value("after", 0.0);
 }
 
 }  // namespace
@@ -167,12 +170,12 @@ Metrics measure_reconstruction(const std::filesystem::path& folder, const Sequen
   Metrics metrics;
   count(map, metrics);
   add_stage_times(folder, metrics);
-  add_plane_rms(folder, metrics);
   if (truth == nullptr) return metrics;
   PlaneEvaluationOptions options;
   options.trajectory.align = map.metric ? Alignment::kSe3 : Alignment::kSim3;
   options.seen_labels = truth->seen_labels;
   measure_trajectories(map, *truth, options.trajectory, metrics);
+  add_plane_rms(folder, metrics);
   if (truth->planes.empty()) return metrics;
   measure_planes(map, *truth, options, metrics);
   OverlayOptions overlay;

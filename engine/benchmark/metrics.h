@@ -9,6 +9,10 @@ namespace planecast::engine {
 /// Figures of one run by key. What does not apply (no truth, no planes) is absent.
 using Metrics = std::map<std::string, double>;
 
+/// Keys of the times of a stage begin with these.
+inline constexpr const char* kMeanTimePrefix = "mean_ms:";
+inline constexpr const char* kMedianTimePrefix = "median_ms:";
+
 struct MetricInfo {
   std::string key;
   std::string label;  ///< with the unit

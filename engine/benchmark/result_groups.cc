@@ -68,4 +68,13 @@ std::vector<std::string> modes_of(const std::vector<ResultGroup>& groups) {
   return modes;
 }
 
+std::vector<const ResultGroup*> groups_of_mode(const std::vector<ResultGroup>& groups,
+                                               const std::string& mode) {
+  std::vector<const ResultGroup*> result;
+  for (const ResultGroup& group : groups) {
+    if (group.mode == mode) result.push_back(&group);
+  }
+  return result;
+}
+
 }  // namespace planecast::engine

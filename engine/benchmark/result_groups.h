@@ -27,4 +27,7 @@ std::vector<ResultGroup> group_rows(const std::vector<BenchmarkRow>& rows);
 /// The modes in order of first appearance.
 std::vector<std::string> modes_of(const std::vector<ResultGroup>& groups);
 
+std::vector<const ResultGroup*> groups_of_mode(const std::vector<ResultGroup>& groups,
+                                               const std::string& mode);
+
 }  // namespace planecast::engine

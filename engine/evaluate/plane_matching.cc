@@ -3,9 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <tuple>
+
+#include "engine/evaluate/partition.h"
 
 namespace planecast::engine {
 namespace {
@@ -45,14 +46,6 @@ PlaneRelation relate(const PlaneRecord& estimate, const std::vector<Eigen::Vecto
     relation.overlap = std::max(relation.overlap, relation.coverage);
   }
   return relation;
-}
-
-double pairs_among(double n) { return n * (n - 1.0) / 2.0; }
-
-double entropy_of(const std::map<int, int>& counts, double total) {
-  double entropy = 0.0;
-  for (const auto& [label, count] : counts) entropy -= count / total * std::log(count / total);
-  return entropy;
 }
 
 }  // namespace
@@ -132,39 +125,11 @@ std::vector<char> planes_in_view(const std::vector<PlaneRecord>& truth,
 
 PointLabelScore score_point_labels(const std::vector<MapPoint>& points,
                                    const std::vector<int>& truth_of_point) {
-  PointLabelScore score;
-  score.points = static_cast<int>(points.size());
-  if (points.size() < 2) return score;
-  std::map<int, int> estimated;
-  std::map<int, int> truth;
-  std::map<std::pair<int, int>, int> both;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    ++estimated[points[i].plane];
-    ++truth[truth_of_point[i]];
-    ++both[{truth_of_point[i], points[i].plane}];
-  }
-  const auto total = static_cast<double>(points.size());
-  double together_estimated = 0.0;
-  double together_truth = 0.0;
-  double together_both = 0.0;
-  double joint_entropy = 0.0;
-  std::map<int, double> best_iou;
-  for (const auto& [label, count] : estimated) together_estimated += pairs_among(count);
-  for (const auto& [label, count] : truth) together_truth += pairs_among(count);
-  for (const auto& [labels, count] : both) {
-    together_both += pairs_among(count);
-    joint_entropy -= count / total * std::log(count / total);
-    const double united = truth[labels.first] + estimated[labels.second] - count;
-    best_iou[labels.first] = std::max(best_iou[labels.first], count / united);
-  }
-  const double disagreeing = together_estimated + together_truth - 2.0 * together_both;
-  score.rand_index = 1.0 - disagreeing / pairs_among(total);
-  score.variation_of_information =
-      std::max(0.0, 2.0 * joint_entropy - entropy_of(estimated, total) - entropy_of(truth, total));
-  for (const auto& [label, count] : truth) {
-    score.segmentation_covering += count / total * best_iou[label];
-  }
-  return score;
+  LabelPairs pairs;
+  for (std::size_t i = 0; i < points.size(); ++i) ++pairs[{truth_of_point[i], points[i].plane}];
+  const PartitionScore partition = score_partition(pairs);
+  return {static_cast<int>(points.size()), partition.rand_index, partition.variation_of_information,
+          partition.segmentation_covering};
 }
 
 }  // namespace planecast::engine

@@ -90,9 +90,9 @@ Json summary_json(const Reconstruction& reconstruction) {
   json["points_on_planes"] = summary.points_on_planes;
   json["planes"] = summary.planes;
   json["planes_by_class"] = classes;
-  if (reconstruction.point_plane_rms) {
-    json["point_plane_rms"] = {{"before", reconstruction.point_plane_rms->before},
-                               {"after", reconstruction.point_plane_rms->after}};
+  if (reconstruction.plane_rms) {
+    json["point_plane_rms"]["before"] = reconstruction.plane_rms->before;
+    json["point_plane_rms"]["after"] = reconstruction.plane_rms->after;
   }
   json["median_depth"] = reconstruction.median_depth;
   json["path_length"] = summary.path_length;

@@ -27,8 +27,7 @@ struct Summary {
 
 Summary summarise(const Reconstruction& reconstruction);
 
-/// summary.json: mode, segmentation, units, camera, the counts above, planes by class,
-/// point-to-plane RMS before and after the joint refinement, warnings.
+/// summary.json: mode, segmentation, units, camera, the counts above, planes by class, warnings.
 nlohmann::ordered_json summary_json(const Reconstruction& reconstruction);
 void write_summary(const Reconstruction& reconstruction, const std::filesystem::path& path);
 

@@ -2,84 +2,30 @@
 
 #include <fmt/format.h>
 
-#include <bit>
+#include <cmath>
 #include <cstdint>
-#include <cstring>
+#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <string_view>
-#include <type_traits>
 
 #include "engine/output/atomic_file.h"
 #include "engine/user_error.h"
+#include "slam/data/byte_stream.h"
+#include "slam/data/map_archive.h"
+#include "slam/features/pyramid.h"
 
 namespace planecast::engine {
 namespace {
 
-static_assert(std::endian::native == std::endian::little,
-              "numbers are dumped as they lie in memory");
+using slam::ByteReader;
+using slam::ByteWriter;
 
 constexpr std::string_view kMagic("PLNCMAP\0", 8);
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 
-/// Appends numbers, strings and vectors of either to a byte string.
-class ByteWriter {
- public:
-  template <typename T>
-  requires std::is_arithmetic_v<T>
-  void put(T value) { bytes_.append(reinterpret_cast<const char*>(&value), sizeof(T)); }
-  void put(std::string_view text) {
-    put(static_cast<std::uint64_t>(text.size()));
-    bytes_ += text;
-  }
-  void put(const std::vector<double>& values) {
-    put(static_cast<std::uint64_t>(values.size()));
-    for (const double value : values) put(value);
-  }
-  const std::string& bytes() const { return bytes_; }
-
- private:
-  std::string bytes_;
-};
-
-/// The reverse; every read is checked against the end, so that no file can make it read beyond.
-class ByteReader {
- public:
-  ByteReader(std::string_view bytes, const std::filesystem::path& path)
-      : bytes_(bytes), path_(path) {}
-
-  template <typename T>
-  requires std::is_arithmetic_v<T> T number() {
-    T value{};
-    std::memcpy(&value, take(sizeof(T)).data(), sizeof(T));
-    return value;
-  }
-  std::string text() { return std::string(take(number<std::uint64_t>())); }
-  std::vector<double> numbers() {
-    std::vector<double> values(count_of(sizeof(double)));
-    for (double& value : values) value = number<double>();
-    return values;
-  }
-  /// Number of items that follow, each of at least `item_bytes`.
-  std::size_t count_of(std::size_t item_bytes) {
-    const auto count = number<std::uint64_t>();
-    if (count > bytes_.size() / item_bytes) fail("is broken");
-    return static_cast<std::size_t>(count);
-  }
-  std::string_view take(std::uint64_t size) {
-    if (size > bytes_.size()) fail("is truncated");
-    const std::string_view taken = bytes_.substr(0, static_cast<std::size_t>(size));
-    bytes_.remove_prefix(static_cast<std::size_t>(size));
-    return taken;
-  }
-  bool at_end() const { return bytes_.empty(); }
-  [[noreturn]] void fail(const std::string& reason) const {
-    throw UserError(fmt::format("{}: {}", path_.string(), reason));
-  }
-
- private:
-  std::string_view bytes_;
-  const std::filesystem::path& path_;
-};
+[[noreturn]] void fail(const std::filesystem::path& path, const std::string& reason) {
+  throw UserError(fmt::format("{}: {}", path.string(), reason));
+}
 
 void put_camera(const slam::Camera& camera, ByteWriter& out) {
   out.put(static_cast<std::int32_t>(camera.lens));
@@ -90,10 +36,10 @@ void put_camera(const slam::Camera& camera, ByteWriter& out) {
   out.put(static_cast<std::uint8_t>(camera.guessed));
 }
 
-slam::Camera take_camera(ByteReader& in) {
+slam::Camera take_camera(ByteReader& in, const std::filesystem::path& path) {
   slam::Camera camera;
   const auto lens = in.number<std::int32_t>();
-  if (lens != 0 && lens != 1) in.fail("names an unknown lens model");
+  if (lens != 0 && lens != 1) fail(path, "names an unknown lens model");
   camera.lens = static_cast<slam::LensModel>(lens);
   camera.width = in.number<std::int32_t>();
   camera.height = in.number<std::int32_t>();
@@ -101,8 +47,11 @@ slam::Camera take_camera(ByteReader& in) {
     *value = in.number<double>();
   for (double& value : camera.distortion) value = in.number<double>();
   camera.guessed = in.number<std::uint8_t>() != 0;
-  if (camera.width <= 0 || camera.height <= 0 || !(camera.fx > 0.0) || !(camera.fy != 0.0)) {
-    in.fail("has an impossible camera");
+  constexpr int kMostPixels = 1 << 15;
+  const bool size_is_sound = camera.width > 0 && camera.height > 0 && camera.width <= kMostPixels &&
+                             camera.height <= kMostPixels;
+  if (!size_is_sound || !(camera.fx > 0.0) || !(std::abs(camera.fy) > 0.0)) {
+    fail(path, "has an impossible camera");
   }
   return camera;
 }
@@ -121,53 +70,113 @@ void take_about(ByteReader& in, Reconstruction& reconstruction) {
   reconstruction.median_depth = in.number<double>();
   reconstruction.mode = in.text();
   reconstruction.segmentation = in.text();
-  reconstruction.warnings.resize(in.count_of(sizeof(std::uint64_t)));
+  reconstruction.warnings.resize(in.count(sizeof(std::uint64_t)));
   for (std::string& warning : reconstruction.warnings) warning = in.text();
 }
 
-void put_chunk(std::string_view tag, const ByteWriter& payload, std::string& bytes) {
-  ByteWriter size;
-  size.put(static_cast<std::uint64_t>(payload.bytes().size()));
-  bytes += tag;
-  bytes += size.bytes();
-  bytes += payload.bytes();
+void put_pictures(const slam::Map& map, ByteWriter& out) {
+  for (const slam::Keyframe& keyframe : map.keyframes) {
+    if (keyframe.pyramid == nullptr || keyframe.pyramid->levels.empty()) continue;
+    std::vector<unsigned char> png;
+    cv::imencode(".png", keyframe.pyramid->levels.front(), png, {cv::IMWRITE_PNG_COMPRESSION, 1});
+    out.put(static_cast<std::int32_t>(keyframe.id));
+    out.put(std::string_view(reinterpret_cast<const char*>(png.data()), png.size()));
+  }
+}
+
+void take_pictures(ByteReader& in, const std::filesystem::path& path, const slam::Camera& camera,
+                   slam::Map& map) {
+  while (in.ok() && !in.at_end()) {
+    slam::Keyframe* keyframe = map.keyframes.find(in.number<std::int32_t>());
+    const std::string png = in.text();
+    if (!in.ok() || keyframe == nullptr) fail(path, "is broken");
+    cv::Mat grey;
+    try {
+      const cv::Mat bytes(1, static_cast<int>(png.size()), CV_8U, const_cast<char*>(png.data()));
+      if (!png.empty()) grey = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE);
+    } catch (const cv::Exception&) {
+      grey.release();
+    }
+    if (grey.cols != camera.width || grey.rows != camera.height) {
+      fail(path, "has a broken picture");
+    }
+    keyframe->pyramid = std::make_shared<const slam::ImagePyramid>(slam::build_pyramid(grey));
+  }
+}
+
+void put_chunk(std::string_view tag, std::string_view payload, ByteWriter& out) {
+  for (const char c : tag) out.put(c);
+  out.put(payload);
+}
+
+/// Checks the header and returns what follows it.
+std::string_view checked_body(std::string_view bytes, const std::filesystem::path& path) {
+  if (!bytes.starts_with(kMagic)) fail(path, "is not a map of this program");
+  ByteReader in(bytes.substr(kMagic.size()));
+  const auto version = in.number<std::uint32_t>();
+  if (in.ok() && version != kVersion) {
+    fail(path,
+         fmt::format("has version {}, not {}: make the reconstruction anew", version, kVersion));
+  }
+  const auto size = in.number<std::uint64_t>();
+  const auto checksum = in.number<std::uint64_t>();
+  const std::string_view body = in.take(size);
+  if (!in.ok()) fail(path, "is truncated");
+  if (!in.at_end() || slam::checksum_of(body) != checksum) {
+    fail(path, "is damaged (its checksum is wrong)");
+  }
+  return body;
 }
 
 }  // namespace
 
 void write_map_bin(const Reconstruction& reconstruction, const std::filesystem::path& path) {
-  ByteWriter version;
-  version.put(kVersion);
-  std::string bytes = std::string(kMagic) + version.bytes();
   ByteWriter camera;
   put_camera(reconstruction.camera, camera);
-  put_chunk("CAMR", camera, bytes);
   ByteWriter about;
   put_about(reconstruction, about);
-  put_chunk("ABOU", about, bytes);
-  write_file(path, bytes);
+  ByteWriter body;
+  put_chunk("CAMR", camera.bytes(), body);
+  put_chunk("ABOU", about.bytes(), body);
+  if (reconstruction.map != nullptr) {
+    put_chunk("SLAM", slam::MapArchive::encode(*reconstruction.map), body);
+    ByteWriter pictures;
+    put_pictures(*reconstruction.map, pictures);
+    put_chunk("PICT", pictures.bytes(), body);
+  }
+  ByteWriter header;
+  for (const char c : kMagic) header.put(c);
+  header.put(kVersion);
+  header.put(static_cast<std::uint64_t>(body.bytes().size()));
+  header.put(slam::checksum_of(body.bytes()));
+  write_file(path, header.bytes() + body.bytes());
 }
 
-void read_map_bin(const std::filesystem::path& path, Reconstruction& reconstruction) {
+void read_map_bin(const std::filesystem::path& path, Reconstruction& reconstruction,
+                  bool with_map) {
   const std::string bytes = read_file(path);
-  if (!std::string_view(bytes).starts_with(kMagic)) {
-    throw UserError(fmt::format("{}: is not a map of this program", path.string()));
-  }
-  ByteReader file(std::string_view(bytes).substr(kMagic.size()), path);
-  const auto version = file.number<std::uint32_t>();
-  if (version != kVersion) file.fail(fmt::format("has version {}, not {}", version, kVersion));
+  ByteReader body(checked_body(bytes, path));
   bool has_camera = false;
-  while (!file.at_end()) {
-    const std::string_view tag = file.take(4);
-    ByteReader chunk(file.take(file.number<std::uint64_t>()), path);
+  std::optional<slam::Map> map;
+  while (body.ok() && !body.at_end()) {
+    const std::string_view tag = body.take(4);
+    ByteReader chunk(body.take(body.number<std::uint64_t>()));
     if (tag == "CAMR") {
-      reconstruction.camera = take_camera(chunk);
+      reconstruction.camera = take_camera(chunk, path);
       has_camera = true;
     } else if (tag == "ABOU") {
       take_about(chunk, reconstruction);
+    } else if (tag == "SLAM" && with_map && has_camera) {
+      map = slam::MapArchive::decode(chunk.rest(), reconstruction.camera);
+      if (!map) fail(path, "is broken");
+    } else if (tag == "PICT" && map) {
+      take_pictures(chunk, path, reconstruction.camera, *map);
     }
+    if (!chunk.ok()) fail(path, "is truncated");
   }
-  if (!has_camera) file.fail("has no camera");
+  if (!body.ok()) fail(path, "is truncated");
+  if (!has_camera) fail(path, "has no camera");
+  if (map) reconstruction.map = std::make_shared<const slam::Map>(*std::move(map));
 }
 
 }  // namespace planecast::engine

@@ -44,12 +44,14 @@ PlaneRecord record_of(const slam::Map& map, const slam::Plane& plane, double spa
 
 }  // namespace
 
-Reconstruction map_to_records(const slam::Map& map, const slam::Camera& camera, bool metric) {
+Reconstruction map_to_records(const slam::Map& map, const slam::Camera& camera, bool metric,
+                              slam::KeyframeId first_keyframe) {
   Reconstruction result;
   result.camera = camera;
   result.metric = metric;
   result.median_depth = median_of_landmark_depths(map);
   for (const slam::Keyframe& keyframe : map.keyframes) {
+    if (keyframe.id < first_keyframe) continue;
     result.keyframes.push_back(
         {keyframe.frame_index, keyframe.timestamp, keyframe.cam_from_world.inverse()});
   }

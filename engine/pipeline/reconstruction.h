@@ -2,11 +2,13 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "slam/data/camera.h"
+#include "slam/data/map.h"
 #include "slam/data/types.h"
 
 namespace planecast::engine {
@@ -32,8 +34,8 @@ struct KeyframeRecord {
 struct PlaneRecord {
   int id = 0;
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, towards the cameras that saw it
-  double offset = 0.0;                                 ///< normal . x + offset = 0
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();    ///< of the plane's own frame
+  double offset = 0.0;                                ///< normal . x + offset = 0
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();   ///< of the plane's own frame
   Eigen::Vector3d x_axis = Eigen::Vector3d::UnitX();
   std::string plane_class = "other";
   int inliers = 0;
@@ -54,15 +56,15 @@ struct MapPoint {
   int plane = slam::kNone;
 };
 
-/// Root mean square distance of landmarks from the plane that owns them, map units, before and after
-/// the final joint refinement.
-struct PointPlaneRms {
+/// Milliseconds of one frame by stage name, in the order of the stages.
+using StageTimes = std::vector<std::pair<std::string, double>>;
+
+/// Distances of the points to their planes, root mean square in map units, before and after the
+/// final joint refinement (equal where it was dropped).
+struct PlaneRms {
   double before = 0.0;
   double after = 0.0;
 };
-
-/// Milliseconds of one frame by stage name, in the order of the stages.
-using StageTimes = std::vector<std::pair<std::string, double>>;
 
 /// What SLAM leaves behind: in memory, and as the reconstruction folder on disk.
 struct Reconstruction {
@@ -70,17 +72,18 @@ struct Reconstruction {
   bool metric = false;  ///< units are metres, else map units
   std::string mode;     ///< "mono" or "rgbd"
   std::string segmentation;
-  double median_depth = 1.0;  ///< of the finished map
+  std::optional<PlaneRms> plane_rms;  ///< of the run itself; not read back
+  double median_depth = 1.0;          ///< of the finished map
   std::vector<FrameRecord> frames;
   std::vector<KeyframeRecord> keyframes;
   std::vector<PlaneRecord> planes;
   std::vector<MapPoint> points;
   Eigen::Vector3d up = -Eigen::Vector3d::UnitY();  ///< unit, world
   double up_confidence = 0.0;
-  std::optional<PointPlaneRms> point_plane_rms;    ///< where planes were refined
-  std::vector<StageTimes> frame_times;             ///< per frame
+  std::vector<StageTimes> frame_times;                       ///< per frame
   std::map<std::string, std::vector<double>> mapping_times;  ///< per keyframe and stage
   std::vector<std::string> warnings;
+  std::shared_ptr<const slam::Map> map;  ///< what map.bin needs to go on from; may be null
 };
 
 }  // namespace planecast::engine

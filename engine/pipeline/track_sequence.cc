@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <future>
 #include <memory>
 #include <utility>
 
 #include "engine/assets.h"
+#include "engine/pipeline/earlier_map.h"
 #include "engine/pipeline/map_to_records.h"
 #include "engine/scene/plane_classes.h"
 #include "engine/user_error.h"
@@ -74,8 +76,8 @@ slam::SystemOptions system_options(const TrackSequenceOptions& options, bool rgb
   return result;
 }
 
-/// Reads and prepares frames one ahead of the one in use, on a second thread where allowed. Whether the
-/// map was initialised is known two frames late, always, so that threads change nothing.
+/// Reads and prepares frames one ahead of the one in use, on a second thread where allowed. Whether
+/// the map was initialised is known two frames late, always, so that threads change nothing.
 class FramesAhead {
  public:
   FramesAhead(Sequence& sequence, const slam::System& system, bool threaded)
@@ -128,23 +130,25 @@ class TwoPassTracker {
         options_(options),
         progress_(progress),
         rgbd_(use_depth(sequence, options.mode)),
-        system_(system_options(options, rgbd_), sequence.camera(),
+        earlier_(read_earlier_map(options.map, sequence, rgbd_)),
+        system_(system_options(options, rgbd_), earlier_.camera,
                 choose_segmenter(sequence, rgbd_, options.segmentation)),
         first_(sequence.first_frame()),
         count_(sequence.end_frame() - sequence.first_frame()) {
     frames_.resize(static_cast<std::size_t>(count_));
     tracked_.resize(static_cast<std::size_t>(count_));
     times_.resize(static_cast<std::size_t>(count_));
+    if (earlier_.map != nullptr) {
+      system_.load(*earlier_.map);
+      first_own_keyframe_ = earlier_.map->keyframes.next_id();
+    }
   }
 
   Reconstruction run() {
     first_pass();
     const slam::FinishResult finished = system_.finish();
     for (const auto& [stage, ms] : finished.mapping_times) mapping_times_[stage].push_back(ms);
-    if (finished.joint.kept) {
-      point_plane_rms_ =
-          PointPlaneRms{finished.joint.plane_rms_before, finished.joint.plane_rms_after};
-    }
+    joint_ = finished.joint;
     take_over_references();
     if (!options_.causal) second_pass();
     return records();
@@ -165,14 +169,16 @@ class TwoPassTracker {
   const TrackSequenceOptions& options_;
   const Progress& progress_;
   bool rgbd_;
+  EarlierMap earlier_;
   slam::System system_;
+  slam::KeyframeId first_own_keyframe_ = 0;
   int first_;
   int count_;
   std::vector<FrameRecord> frames_;
   std::vector<Tracked> tracked_;
   std::vector<StageTimes> times_;
   std::map<std::string, std::vector<double>> mapping_times_;
-  std::optional<PointPlaneRms> point_plane_rms_;
+  slam::JointResult joint_;
 };
 
 void TwoPassTracker::record_first(int position, const slam::FrameTrack& track) {
@@ -199,7 +205,7 @@ void TwoPassTracker::record_first(int position, const slam::FrameTrack& track) {
 
 void TwoPassTracker::first_pass() {
   FramesAhead ahead(sequence_, system_, options_.threads > 1);
-  ahead.request(first_, false);
+  ahead.request(first_, system_.initialised());
   for (int position = 0; position < count_; ++position) {
     FramesAhead::Prepared prepared = ahead.take();
     const bool initialised = system_.initialised();
@@ -243,8 +249,8 @@ bool TwoPassTracker::localise_frame(int position, const std::optional<slam::Pose
   return true;
 }
 
-/// Localises the frames begin, begin + step, ... before end; those without a pose of their own start
-/// from the frame before them in this order.
+/// Localises the frames begin, begin + step, ... before end; those without a pose of their own
+/// start from the frame before them in this order.
 void TwoPassTracker::localise_run(int begin, int end, int step, int& done) {
   FramesAhead ahead(sequence_, system_, options_.threads > 1);
   if (begin != end) ahead.request(first_ + begin, true);
@@ -290,12 +296,17 @@ void TwoPassTracker::second_pass() {
 }
 
 Reconstruction TwoPassTracker::records() {
-  Reconstruction result = map_to_records(system_.map(), system_.camera(), rgbd_);
+  Reconstruction result =
+      map_to_records(system_.map(), system_.camera(), earlier_.metric, first_own_keyframe_);
+  result.map = std::make_shared<const slam::Map>(system_.map());
   result.mode = rgbd_ ? "rgbd" : "mono";
+  if (joint_.plane_rms_before > 0.0) {
+    result.plane_rms = PlaneRms{joint_.plane_rms_before,
+                        joint_.kept ? joint_.plane_rms_after : joint_.plane_rms_before};
+  }
   result.frames = std::move(frames_);
   result.frame_times = std::move(times_);
   result.mapping_times = std::move(mapping_times_);
-  result.point_plane_rms = point_plane_rms_;
   result.warnings = sequence_.warnings();
   for (FrameRecord& record : result.frames) {
     if (record.world_from_cam) record.reason.clear();

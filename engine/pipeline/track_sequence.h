@@ -11,26 +11,31 @@
 namespace planecast::engine {
 
 struct TrackSequenceOptions {
-  std::string mode = "auto";          ///< mono | rgbd | auto (rgbd where there is depth)
-  std::string segmentation = "auto";  ///< auto | masks | depth | none (auto: masks, else depth, else none)
-  bool causal = false;                ///< no second pass
-  int threads = 2;                    ///< changes no result
+  std::string mode = "auto";  ///< mono | rgbd | auto (rgbd where there is depth)
+  std::string segmentation =
+      "auto";           ///< auto | masks | depth | none (auto: masks, else depth, else none)
+  bool causal = false;  ///< no second pass
+  int threads = 2;      ///< changes no result
   std::uint64_t seed = 1;
   bool skip_unreadable = false;
-  std::optional<Eigen::Vector3d> up;  ///< unit, world; estimated where not given
+  std::optional<Eigen::Vector3d> up;    ///< unit, world; estimated where not given
   std::string plane_merge = "default";  ///< default | paper
   std::string plane_fit = "graph-cut";  ///< graph-cut | plain: sequential RANSAC alone
   bool map_planes = true;
   bool refine_jointly = true;  ///< final refinement of points, poses and planes together
   int features = 1000;
   bool close_loops = true;
+  std::string map;  ///< reconstruction folder to go on from; empty: start anew
 };
 
 /// Called with (done, total) after each frame of either pass.
 using Progress = std::function<void(int done, int total)>;
 
-/// SLAM over the whole sequence; then, unless causal, every frame is localised against the finished map.
-/// Throws UserError for bad options and for a frame that cannot be read (without skip_unreadable).
+/// SLAM over the whole sequence; then, unless causal, every frame is localised against the finished
+/// map. With an earlier map the sequence is localised in it, mapping goes on from there, and the
+/// world and its units are the map's; keyframes and frames of the result are those of the sequence
+/// alone. Throws UserError for bad options, a map that cannot be used, and for a frame that cannot
+/// be read (without skip_unreadable).
 Reconstruction track_sequence(Sequence& sequence, const TrackSequenceOptions& options,
                               const Progress& progress);
 

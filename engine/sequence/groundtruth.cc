@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <string>
 
 #include "engine/sequence/camera_file.h"
@@ -73,10 +74,10 @@ std::vector<TimedPose> read_euroc(const fs::path& file) {
 
 /// Nothing for a matrix of a frame that its makers could not locate.
 std::optional<slam::Pose> read_matrix(const fs::path& file) {
+  // Not a list: '#' begins no comment, but stands in "-1.#IND" of frames without a pose.
+  std::ifstream in(file);
   std::vector<std::string> fields;
-  for (const ListLine& line : read_list_lines(file)) {
-    fields.insert(fields.end(), line.fields.begin(), line.fields.end());
-  }
+  for (std::string field; in >> field;) fields.push_back(field);
   if (fields.size() != 16) throw UserError(file.string() + ": expected a 4x4 matrix");
   Eigen::Matrix4d matrix;
   for (int i = 0; i < 16; ++i) {

@@ -55,6 +55,8 @@ class ByteReader {
     bytes_.remove_prefix(static_cast<std::size_t>(size));
     return taken;
   }
+  /// What is left.
+  std::string_view rest() const { return bytes_; }
   bool at_end() const { return bytes_.empty(); }
   bool ok() const { return ok_; }
   void fail() { ok_ = false; }

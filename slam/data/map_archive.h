@@ -11,12 +11,13 @@
 namespace planecast::slam {
 
 /// A map as bytes, to the bit: keyframes with features, descriptors and landmarks, landmarks with
-/// observations, planes, and what is remembered of erased keyframes and replaced landmarks. Left out are
-/// images (pyramids, depth, masks) and bags of words, which can be made again.
+/// observations, planes, and what is remembered of erased keyframes and replaced landmarks. Left
+/// out are images (pyramids, depth, masks) and bags of words, which can be made again.
 class MapArchive {
  public:
   static std::string encode(const Map& map);
-  /// `camera` bounds the features' grid. Nothing where the bytes are no map or break its invariants.
+  /// `camera` bounds the features' grid. Nothing where the bytes are no map or break its
+  /// invariants.
   static std::optional<Map> decode(std::string_view bytes, const Camera& camera);
 
  private:

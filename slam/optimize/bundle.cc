@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "slam/optimize/bundle_problem.h"
+#include "slam/optimize/schur_solver.h"
 
 namespace planecast::slam {
 namespace {
@@ -54,7 +55,20 @@ struct Schedule {
   double robust_tolerance = kGlobalTolerance;
   double tolerance = kGlobalTolerance;
   bool refine_focal = false;
+  bool window = false;  ///< by solve_window
 };
+
+int solve(BundleProblem& problem, const Schedule& schedule, bool robust) {
+  const int iterations = robust ? schedule.robust_iterations : schedule.iterations;
+  const double tolerance = robust ? schedule.robust_tolerance : schedule.tolerance;
+  if (schedule.window) return solve_window(problem, {iterations, robust, tolerance});
+  BundleSolve options;
+  options.refine_focal = schedule.refine_focal;
+  options.iterations = iterations;
+  options.robust = robust;
+  options.function_tolerance = tolerance;
+  return solve_bundle(problem, options);
+}
 
 /// The two passes, from a collected problem to the changed map.
 BundleResult run_bundle(BundleProblem& problem, const Schedule& schedule, Map& map) {
@@ -69,16 +83,9 @@ BundleResult run_bundle(BundleProblem& problem, const Schedule& schedule, Map& m
   // A single point behind a camera would stop the solver at its first step.
   deactivate_outliers(problem, std::numeric_limits<double>::infinity());
   result.rms_before_px = reprojection_rms_px(problem);
-  BundleSolve solve;
-  solve.refine_focal = schedule.refine_focal;
-  solve.iterations = schedule.robust_iterations;
-  solve.function_tolerance = schedule.robust_tolerance;
-  result.iterations = solve_bundle(problem, solve);
+  result.iterations = solve(problem, schedule, true);
   deactivate_outliers(problem);
-  solve.robust = false;
-  solve.iterations = schedule.iterations;
-  solve.function_tolerance = schedule.tolerance;
-  result.iterations += solve_bundle(problem, solve);
+  result.iterations += solve(problem, schedule, false);
   deactivate_outliers(problem);
   if (gauge.other != kNone) restore_distance(problem, gauge.anchor, gauge.other, gauge.distance);
   result.rms_after_px = reprojection_rms_px(problem);
@@ -162,6 +169,7 @@ BundleResult local_bundle(Map& map, const Camera& camera, KeyframeId centre,
   schedule.iterations = options.iterations;
   schedule.robust_tolerance = kLocalRobustTolerance;
   schedule.tolerance = kLocalTolerance;
+  schedule.window = true;
   return run_bundle(problem, schedule, map);
 }
 

@@ -10,8 +10,8 @@ struct BundleOptions {
   double chi2_mono = 5.991;
   double chi2_depth = 7.815;
   double depth_baseline_m = 0.08;  ///< as in PoseOptions
-  int max_local_keyframes = 20;    ///< free keyframes of the local bundle, best covisible first
-  int max_fixed_keyframes = 40;    ///< seen by the same landmarks, held
+  int max_local_keyframes = 12;    ///< free keyframes of the local bundle, best covisible first
+  int max_fixed_keyframes = 20;    ///< seen by the same landmarks, held
   bool refine_focal = false;       ///< global only: one common factor on fx and fy
   ScaleLevels levels;
 };
@@ -28,10 +28,10 @@ struct BundleResult {
   double focal_factor = 1.0;  ///< refined fx / given fx
 };
 
-/// Ceres with analytic Jacobians, Schur ordering, num_threads = 1 (two are not repeatable), Huber;
-/// two passes with the outliers removed between and after. Poses, landmarks and observations of
-/// `map` are updated; planes are not touched. The first keyframe of the map (and, in mono, what
-/// fixes the gauge) is held.
+/// Analytic Jacobians, Schur elimination, Huber; the global one by Ceres with num_threads = 1 (two
+/// are not repeatable), the local one by solve_window. Two passes with the outliers removed between
+/// and after. Poses, landmarks and observations of `map` are updated; planes are not touched. The
+/// first keyframe of the map (and, in mono, what fixes the gauge) is held.
 BundleResult local_bundle(Map& map, const Camera& camera, KeyframeId centre,
                           const BundleOptions& options);
 /// All keyframes and landmarks. Where options.refine_focal is set, `camera` is updated and so are,

@@ -32,9 +32,10 @@ std::vector<Decal> corridor_decals(double length, const Texture& door, std::uint
   const double door_u = random.uniform(0.15, 0.45) * length;
   const auto upright = [door](float u, float v) { return door(v, u); };
   decals.push_back({static_cast<float>(door_u), 0.0F, 0.85F, 2.05F, upright, 0.03F, 0.0F});
-  for (int i = 0; i < 5; ++i) {
-    const double width = random.uniform(0.35, 0.75);
-    const double u = 0.25 + (length - 0.9) * i / 5.0 + random.uniform(0.0, 0.25);
+  const int places = static_cast<int>(std::lround(1.4 * length));
+  for (int i = 0; i < places; ++i) {
+    const double width = random.uniform(0.32, 0.58);
+    const double u = 0.15 + (length - 0.6) * i / places + random.uniform(0.0, 0.08);
     if (u + width > door_u - 0.05 && u < door_u + 0.9) continue;
     decals.push_back(hang(kPrints[(i + seed) % 5], u, random.uniform(0.8, 1.35), width,
                           width * random.uniform(0.8, 1.3), seed + 17U * i));

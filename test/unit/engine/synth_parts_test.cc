@@ -134,6 +134,40 @@ TEST(CameraPath, StaysAtEyeHeightInsideTheRoomWithALevelHorizon) {
   EXPECT_LT(back.norm(), 0.1);  // a loop
 }
 
+TEST(CameraPath, TheRingComesBackAndSeesNoPlaceTwiceBefore) {
+  const CameraPath path = make_scene("ring", 1)->path;
+  const Vector3d first = path.world_from_cam(0.0).translation();
+  const double end_s = path.duration_s();
+  // Two metres at the end repeat the beginning: the hand sways by some centimetres.
+  const double repeated_s = 2.0 / 0.55;
+  EXPECT_LT((path.world_from_cam(end_s - repeated_s).translation() - first).norm(), 0.15);
+  EXPECT_LT((path.world_from_cam(end_s).translation() -
+             path.world_from_cam(repeated_s).translation())
+                .norm(),
+            0.15);
+  double farthest = 0.0;
+  // From two metres after the start to two metres before it is reached again.
+  for (double t = repeated_s; t < end_s - 2.0 * repeated_s; t += 0.1) {
+    const Vector3d eye = path.world_from_cam(t).translation();
+    farthest = std::max(farthest, (eye - first).norm());
+    EXPECT_GT((eye - first).norm(), 0.8) << t;
+    // In the corridor: outside the block and inside the outer walls.
+    EXPECT_GT(std::max(std::abs(eye.x() - 3.0), std::abs(eye.y() - 3.0)), 1.5) << t;
+    EXPECT_LT(std::max(std::abs(eye.x() - 3.0), std::abs(eye.y() - 3.0)), 2.6) << t;
+  }
+  EXPECT_GT(farthest, 4.0);
+}
+
+TEST(CameraPath, TheRevisitedRoomGoesOnForAsLongAsAsked) {
+  const CameraPath path = make_scene("revisit", 1)->path;
+  EXPECT_DOUBLE_EQ(path.duration_s(), 100.0);
+  for (const double lap : {30.0, 300.0, 3000.0}) {
+    const Vector3d moved =
+        path.world_from_cam(lap + 1.0).translation() - path.world_from_cam(lap).translation();
+    EXPECT_GT(moved.norm(), 0.1) << lap;
+  }
+}
+
 TEST(Scenes, RotationStartOnlyTurnsAtFirst) {
   const CameraPath path = make_scene("rotation-start", 1)->path;
   const Vector3d first = path.world_from_cam(0.0).translation();

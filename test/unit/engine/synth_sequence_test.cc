@@ -117,6 +117,48 @@ TEST(Synth, DepthPosesAndPlanesAgree) {
   }
 }
 
+/// Mean distance of the labelled pixels' points from their planes, metres.
+double mean_plane_distance(Sequence& sequence, const fs::path& folder, bool know_the_lens) {
+  const auto poses = read_trajectory(folder / "groundtruth.txt");
+  const auto planes = read_planes(folder / "planes.json");
+  const slam::Camera& camera = sequence.camera();
+  const slam::FrameInput frame = sequence.read(0);
+  double sum = 0.0;
+  int count = 0;
+  for (int y = 0; y < camera.height; ++y) {
+    for (int x = 0; x < camera.width; ++x) {
+      const int label = frame.labels.at<std::uint16_t>(y, x);
+      const float z = frame.depth.at<float>(y, x);
+      if (label == 0 || z == 0.0F) continue;
+      const Eigen::Vector2d pixel =
+          know_the_lens ? camera.undistort(Eigen::Vector2d(x, y)) : Eigen::Vector2d(x, y);
+      const Eigen::Vector3d point = poses[0].world_from_cam * (z * camera.ray(pixel));
+      sum += std::abs(planes.at(label).normal.dot(point) + planes.at(label).offset);
+      ++count;
+    }
+  }
+  EXPECT_GT(count, camera.width * camera.height / 3);
+  return sum / std::max(count, 1);
+}
+
+TEST(Synth, AWideLensDistortsAsItsCameraFileSays) {
+  TestFolder folder;
+  SynthOptions options = tiny("corner");
+  options.lens = "wide";
+  options.width = 320;
+  options.height = 240;
+  options.frames = 1;
+  options.effects = false;
+  write_synthetic(options, folder.path(), nullptr);
+  const auto sequence = open_sequence(folder.path(), {});
+  EXPECT_TRUE(sequence->camera().has_distortion());
+  // Depth is that of the nearest drawn pixel: 0.38 px off on average, at a focal length of 187 px
+  // and 2.5 m 5 mm on a surface seen at 45 degrees.
+  const double with_lens = mean_plane_distance(*sequence, folder.path(), true);
+  EXPECT_LT(with_lens, 0.005);
+  EXPECT_GT(mean_plane_distance(*sequence, folder.path(), false), 5.0 * with_lens);
+}
+
 TEST(Synth, ACoveredLensSeesNothing) {
   TestFolder folder;
   SynthOptions options = tiny("tracking-loss");

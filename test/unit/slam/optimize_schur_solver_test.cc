@@ -1,0 +1,93 @@
+#include "slam/optimize/schur_solver.h"
+
+#include <gtest/gtest.h>
+
+#include "test/unit/slam/synthetic_map.h"
+
+namespace planecast::slam {
+namespace {
+
+using namespace synthetic;
+
+double total_chi2(const BundleProblem& problem) {
+  double sum = 0.0;
+  for (const BundleObservation& seen : problem.observations) {
+    if (seen.active) sum += problem.chi2(seen);
+  }
+  return sum;
+}
+
+/// A problem whose first two keyframes are fixed, perturbed.
+BundleProblem perturbed_problem(bool depth, double outlier_share, Random& random) {
+  MapOptions options;
+  options.depth = depth;
+  options.noise_px = 0.5;
+  options.outlier_share = outlier_share;
+  MapScene scene = make_box_map(options, random);
+  perturb(scene.map, 2, 0.01, 0.03, 0.05, random);
+  BundleProblem problem = collect_whole_map(scene.map, scene.camera, {});
+  problem.fixed[1] = 1;
+  return problem;
+}
+
+TEST(SolveWindow, ReachesTheMinimumThatCeresDoes) {
+  Random random(seed_of("SolveWindow.ReachesTheMinimumThatCeresDoes"));
+  for (const bool depth : {false, true}) {
+    BundleProblem ours = perturbed_problem(depth, 0.0, random);
+    BundleProblem theirs = ours;
+    const double before = total_chi2(ours);
+    solve_window(ours, {30, false, 1e-9});
+    BundleSolve solve;
+    solve.iterations = 30;
+    solve.robust = false;
+    solve.function_tolerance = 1e-9;
+    solve_bundle(theirs, solve);
+    EXPECT_LT(total_chi2(ours), 0.1 * before);
+    // Both end within their tolerance of one minimum.
+    EXPECT_NEAR(total_chi2(ours) / total_chi2(theirs), 1.0, 1e-5) << "depth " << depth;
+    for (std::size_t i = 0; i < ours.poses.size(); ++i) {
+      for (std::size_t k = 0; k < 7; ++k) {
+        // Signs of a quaternion are free.
+        EXPECT_NEAR(std::abs(ours.poses[i][k]), std::abs(theirs.poses[i][k]), 1e-4);
+      }
+    }
+  }
+}
+
+TEST(SolveWindow, IsRobustAgainstOutliers) {
+  Random random(seed_of("SolveWindow.IsRobustAgainstOutliers"));
+  BundleProblem ours = perturbed_problem(false, 0.1, random);
+  BundleProblem theirs = ours;
+  solve_window(ours, {30, true, 1e-9});
+  BundleSolve solve;
+  solve.iterations = 30;
+  solve.function_tolerance = 1e-9;
+  solve_bundle(theirs, solve);
+  // Outliers in front of two cameras leave shallow minima beside one another: what is told apart is
+  // the share of observations that agree.
+  const int left_ours = deactivate_outliers(ours);
+  const int left_theirs = deactivate_outliers(theirs);
+  EXPECT_NEAR(left_ours, left_theirs, 0.02 * static_cast<double>(ours.observations.size()));
+}
+
+TEST(SolveWindow, HoldsWhatIsFixed) {
+  Random random(seed_of("SolveWindow.HoldsWhatIsFixed"));
+  BundleProblem problem = perturbed_problem(false, 0.0, random);
+  const BundleProblem before = problem;
+  solve_window(problem, {10, true, 1e-6});
+  EXPECT_EQ(problem.poses[0], before.poses[0]);
+  EXPECT_EQ(problem.poses[1], before.poses[1]);
+  EXPECT_NE(problem.poses[2], before.poses[2]);
+}
+
+TEST(SolveWindow, MovesPointsAloneWhereEveryPoseIsFixed) {
+  Random random(seed_of("SolveWindow.MovesPointsAloneWhereEveryPoseIsFixed"));
+  BundleProblem problem = perturbed_problem(false, 0.0, random);
+  for (char& fixed : problem.fixed) fixed = 1;
+  const double before = total_chi2(problem);
+  EXPECT_GT(solve_window(problem, {10, false, 1e-6}), 0);
+  EXPECT_LT(total_chi2(problem), before);
+}
+
+}  // namespace
+}  // namespace planecast::slam
