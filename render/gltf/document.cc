@@ -1,6 +1,6 @@
 #include "render/gltf/document.h"
 
-#include <array>
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <string_view>
@@ -90,7 +90,7 @@ Bytes fetch(const fs::path& folder, const std::string& uri, const std::string& w
   return std::move(*bytes);
 }
 
-/// The buffer is there for readers without meshopt only; its bytes are never looked at.
+/// The buffer stands for what compressed views decode to; its own bytes are never looked at.
 bool only_fallback(const json& buffer) {
   if (!buffer.contains("extensions") || !buffer["extensions"].is_object()) return false;
   for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
@@ -101,6 +101,14 @@ bool only_fallback(const json& buffer) {
     }
   }
   return false;
+}
+
+/// Some writers leave out the mark above.
+bool uses_meshopt(const json& document) {
+  const json& used = array_of(document, "extensionsUsed");
+  return std::ranges::any_of(used, [](const json& name) {
+    return name == "EXT_meshopt_compression" || name == "KHR_meshopt_compression";
+  });
 }
 
 void load_buffers(GltfDocument& document, const fs::path& folder, const Chunks& chunks) {
@@ -118,6 +126,8 @@ void load_buffers(GltfDocument& document, const fs::path& folder, const Chunks& 
       bytes = fetch(folder, uri->get<std::string>(), what);
     } else if (i == 0 && chunks.has_binary) {
       bytes.assign(chunks.binary.begin(), chunks.binary.end());
+    } else if (uses_meshopt(document.json)) {
+      continue;
     } else {
       throw ImportError(what + " has no data");
     }
