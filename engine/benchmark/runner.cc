@@ -213,7 +213,8 @@ std::optional<BenchmarkRow> BenchmarkRunner::read_row(const BenchmarkRun& run) c
     return std::nullopt;
   }
   BenchmarkRow row{run, json.value("status", ""), {}};
-  for (const auto& [key, value] : json.value("metrics", nlohmann::json::object()).items()) {
+  const nlohmann::json metrics = json.value("metrics", nlohmann::json::object());
+  for (const auto& [key, value] : metrics.items()) {
     if (value.is_number()) row.metrics[key] = value.get<double>();
   }
   return row;

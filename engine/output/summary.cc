@@ -38,6 +38,7 @@ Json frames_json(const Summary& summary) {
   json["until_initialised"] = summary.frames_until_initialised;
   json["first_tracked"] = summary.first_tracked_frame;
   json["mean_inliers"] = summary.mean_inliers;
+  json["not_tracked_because"] = summary.not_tracked_because;
   return json;
 }
 
@@ -53,6 +54,7 @@ Summary summarise(const Reconstruction& reconstruction) {
   double inliers = 0.0;
   for (const FrameRecord& frame : reconstruction.frames) {
     if (frame.state == "lost") ++summary.lost;
+    if (!frame.reason.empty()) ++summary.not_tracked_because[frame.reason];
     if (frame.state == "unreadable") ++summary.unreadable;
     if (frame.causal_world_from_cam) {
       if (summary.tracked == 0) summary.first_tracked_frame = frame.index;

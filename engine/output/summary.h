@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
@@ -21,8 +22,9 @@ struct Summary {
   int planes = 0;
   int points = 0;
   int points_on_planes = 0;
-  double mean_inliers = 0.0;  ///< of frames with a final pose
-  double path_length = 0.0;   ///< of the final camera positions, map units or metres
+  double mean_inliers = 0.0;                       ///< of frames with a final pose
+  std::map<std::string, int> not_tracked_because;  ///< reason -> frames, of the first pass
+  double path_length = 0.0;  ///< of the final camera positions, map units or metres
 };
 
 Summary summarise(const Reconstruction& reconstruction);

@@ -308,9 +308,6 @@ Reconstruction TwoPassTracker::records() {
   result.frame_times = std::move(times_);
   result.mapping_times = std::move(mapping_times_);
   result.warnings = sequence_.warnings();
-  for (FrameRecord& record : result.frames) {
-    if (record.world_from_cam) record.reason.clear();
-  }
   UpOptions up_options;
   up_options.known_up = options_.up;
   classify_planes(result, up_options);

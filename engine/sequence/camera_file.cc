@@ -24,6 +24,7 @@ struct Preset {
   double fx, fy, cx, cy;
   std::array<double, 5> distortion;
   double depth_factor;
+  bool nominal = false;  ///< not calibrated: the focal length is to be refined
 };
 
 // TUM: Sturm et al. 2012, calibration of the ROS default set; ICL-NUIM: Handa et al. 2014;
@@ -58,7 +59,7 @@ constexpr Preset kPresets[] = {
      248.375,
      {-0.28340811, 0.07395907, 0.00019359, 1.76187114e-05, 0.0},
      5000.0},
-    {"7scenes", 640, 480, 525.0, 525.0, 320.0, 240.0, {}, 1000.0},
+    {"7scenes", 640, 480, 525.0, 525.0, 320.0, 240.0, {}, 1000.0, true},
 };
 
 // Accepted shape difference: a sensor's width and height are whole pixels at both sizes.
@@ -233,6 +234,7 @@ std::optional<CameraSettings> camera_preset(const std::string& name) {
     settings.camera.cy = preset.cy;
     settings.camera.distortion = preset.distortion;
     settings.depth_factor = preset.depth_factor;
+    settings.camera.guessed = preset.nominal;
     return settings;
   }
   return std::nullopt;

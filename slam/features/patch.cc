@@ -136,9 +136,17 @@ std::optional<PatchTemplate> make_template(const cv::Mat& image, const Eigen::Ve
 }
 
 float correlate(const PatchTemplate& patch, const cv::Mat& image, const Eigen::Vector2f& centre) {
-  if (!holds_patch(image, centre)) return -1.0F;
+  const int x0 = static_cast<int>(std::floor(centre.x() + kFirst + 0.5F));
+  const int y0 = static_cast<int>(std::floor(centre.y() + kFirst + 0.5F));
+  if (x0 < 0 || y0 < 0 || x0 + kPatchSide > image.cols || y0 + kPatchSide > image.rows)
+    return -1.0F;
   PatchValues current;
-  sample_upright(image, centre, current);
+  for (int v = 0; v < kPatchSide; ++v) {
+    const uchar* row = image.ptr<uchar>(y0 + v) + x0;
+    for (int u = 0; u < kPatchSide; ++u) {
+      current[v * kPatchSide + u] = static_cast<float>(row[u]);
+    }
+  }
   // The template has zero mean, so that the image's mean drops out of the product.
   const float sum = current.sum();
   const float square = current.square().sum() - sum * sum / kPatchArea;

@@ -28,8 +28,9 @@ struct PatchTemplate {
 std::optional<PatchTemplate> make_template(const cv::Mat& image, const Eigen::Vector2f& centre,
                                            const Eigen::Matrix2f& ref_from_patch);
 
-/// Zero-mean normalised correlation of the template with the image at a place, -1..1; -1 where it
-/// reaches beyond the image.
+/// Zero-mean normalised correlation of the template with the image, -1..1, at the whole pixels
+/// nearest to a place: a quick look, half a pixel off at most. -1 where it reaches beyond the
+/// image.
 float correlate(const PatchTemplate& patch, const cv::Mat& image, const Eigen::Vector2f& centre);
 
 struct PatchAlignOptions {

@@ -18,7 +18,10 @@ namespace planecast::slam {
 struct RansacOptions {
   double threshold = 2.0;  ///< eps_d: inlier distance
   double max_rms = 1.0;    ///< eps_L: accepted RMS of the inliers' distances
-  double lambda = 0.975;   ///< spatial coherence
+  /// Spatial coherence. [D] Divided over the neighbours, so that all pairs together weigh as much
+  /// as all points: with eight neighbours of full weight each, a point at the border of what a mask
+  /// leaked in is labelled by its neighbours alone.
+  double lambda = 0.975;
   /// [D] Charged for each point between 1 and 3 thresholds. At 0.6 points strewn evenly through
   /// space score nothing; 0 is the plain score.
   double background_cost = 0.0;
@@ -78,6 +81,8 @@ class GraphCutRansac {
         options_(options),
         random_(options.seed),
         n_(model.size()),
+        pair_lambda_(options.lambda *
+                     std::min(1.0, n_ / std::max(1.0, static_cast<double>(neighbours.size())))),
         kernel_(static_cast<std::size_t>(n_)),
         label_(static_cast<std::size_t>(n_)) {
     candidates_.reserve(kernel_.size());
@@ -214,7 +219,7 @@ class GraphCutRansac {
       ++result.cuts;
       for (int i = 0; i < n_; ++i)
         kernel_[i] = in_reach(squared_[i]) ? kernel_of(squared_[i]) : 0.0;
-      cut_.label(kernel_, neighbours_, options_.lambda, label_);
+      cut_.label(kernel_, neighbours_, pair_lambda_, label_);
     } else {
       std::fill(label_.begin(), label_.end(), 1);
     }
@@ -276,6 +281,7 @@ class GraphCutRansac {
   RansacOptions options_;
   Random random_;
   int n_;
+  double pair_lambda_;  ///< weight of one pair
   Parameters best_{};
   double best_score_ = 0.0;
   int best_inliers_ = 0;

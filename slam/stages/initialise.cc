@@ -29,6 +29,18 @@ std::string explain(TwoViewFailure failure) {
   return "";
 }
 
+/// The corners moved by this share of the image's width and still show no parallax: the camera
+/// turned.
+constexpr double kRotationShift = 0.05;
+
+double median_shift_px(const std::vector<PointPair>& pairs) {
+  std::vector<double> shifts;
+  for (const PointPair& pair : pairs) shifts.push_back((pair.cur - pair.ref).norm());
+  const auto middle = shifts.begin() + static_cast<std::ptrdiff_t>(shifts.size() / 2);
+  std::nth_element(shifts.begin(), middle, shifts.end());
+  return *middle;
+}
+
 void add_landmark(Map& map, const Eigen::Vector3d& position, const Eigen::Vector3f& color,
                   const std::vector<Observation>& observations, const ScaleLevels& levels) {
   Landmark landmark;
@@ -195,7 +207,10 @@ InitialiseResult MonoInitialiser::try_image(ImageFeatures& image, Map& map) {
   }
   const TwoViewResult two_view = solve(matches.pairs, matches.quality, result.used_homography);
   if (two_view.failure != TwoViewFailure::kNone) {
-    result.reason = explain(two_view.failure);
+    result.reason = two_view.failure == TwoViewFailure::kTooLittleParallax &&
+                            median_shift_px(matches.pairs) > kRotationShift * camera_.width
+                        ? "pure rotation"
+                        : explain(two_view.failure);
     return result;
   }
   if (options_.by_patches) place_tracks(image, matches);

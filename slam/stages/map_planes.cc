@@ -68,12 +68,14 @@ void PlaneMapper::update(Map& map, KeyframeId keyframe, PlaneMappingStats& stats
   if (!(scale_.eps_d > 0.0)) return;
   const PlaneContext context{options_, scale_, camera_, rgbd_};
   KeyframePoints shown;
+  std::vector<GrowingPlane> growing;
   {
     // What an existing plane explains must not become a second plane, so that planes grow first
     // [D].
     const StepTimer timer(stats.merge_expand_ms);
     shown = gather_points(map, keyframe, context);
-    stats.expanded += expand_planes(map, keyframe, context, shown);
+    prepare_growth(map, context, growing);
+    stats.expanded += expand_planes(map, keyframe, context, shown, growing);
   }
   {
     const StepTimer timer(stats.new_ms);
@@ -81,9 +83,10 @@ void PlaneMapper::update(Map& map, KeyframeId keyframe, PlaneMappingStats& stats
   }
   {
     const StepTimer timer(stats.merge_expand_ms);
-    stats.expanded += expand_planes(map, keyframe, context, shown);
+    prepare_growth(map, context, growing);
+    stats.expanded += expand_planes(map, keyframe, context, shown, growing);
     doubt_planes(map, context, shown);
-    stats.merged += merge_planes(map, context);
+    stats.merged += merge_planes(map, context, shown);
   }
   {
     const StepTimer timer(stats.reestimate_ms);

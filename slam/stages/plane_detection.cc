@@ -91,21 +91,21 @@ class PlaneFinder {
     int found = 0;
     for (const std::vector<int>& group : groups_by_label(labels, context_.options.min_inliers)) {
       // A mask may cover more than one plane: what the first leaves is tried again.
-      fit_sequentially(group, context_.options.min_inliers, kMaxModelsPerMask,
-                       [&](const std::vector<int>& left) {
-                         auto candidate = fit(left, context_.scale.eps_d, kMinMaskRatio);
-                         if (!candidate || !tighten(left, *candidate)) return std::vector<int>();
-                         std::vector<int> consumed = near(left, *candidate, context_.scale.eps_d);
-                         keep_connected(shown_, context_.scale, *candidate);
-                         if (static_cast<int>(candidate->inliers.size()) <
-                                 context_.options.min_inliers ||
-                             !is_plausible(*candidate)) {
-                           return std::vector<int>();
-                         }
-                         add_plane(*candidate, shown_.label[group.front()]);
-                         ++found;
-                         return consumed;
-                       });
+      fit_sequentially(
+          group, context_.options.min_inliers, kMaxModelsPerMask,
+          [&](const std::vector<int>& left) {
+            auto candidate = fit(left, context_.scale.eps_d, kMinMaskRatio);
+            if (!candidate || !tighten(left, *candidate)) return std::vector<int>();
+            std::vector<int> consumed = near(left, *candidate, context_.scale.eps_d);
+            keep_connected(shown_, context_.scale, *candidate);
+            if (static_cast<int>(candidate->inliers.size()) < context_.options.min_inliers ||
+                !is_plausible(*candidate)) {
+              return std::vector<int>();
+            }
+            add_plane(*candidate, shown_.label[group.front()]);
+            ++found;
+            return consumed;
+          });
     }
     return found;
   }
@@ -203,8 +203,8 @@ class PlaneFinder {
     return result;
   }
 
-  /// From eps_d down to the plane's own inlier distance: takes in what lies within and refits. False
-  /// where what is left is degenerate or thicker than eps_Pi.
+  /// From eps_d down to the plane's own inlier distance: takes in what lies within and refits.
+  /// False where what is left is degenerate or thicker than eps_Pi.
   bool tighten(const std::vector<int>& pool, PlaneCandidate& candidate) const {
     constexpr int kRounds = 4;
     candidate.eps = context_.scale.eps_d;
@@ -216,7 +216,8 @@ class PlaneFinder {
       const bool turned = fitted->plane.normal.dot(candidate.plane.normal) < 0.0;
       candidate.plane = turned ? fitted->plane.flipped() : fitted->plane;
       rms = fitted->rms;
-      const PlanePoints support = select(shown_.points, near(pool, candidate, context_.scale.eps_d));
+      const PlanePoints support =
+          select(shown_.points, near(pool, candidate, context_.scale.eps_d));
       candidate.eps = own_eps(candidate.plane, support, context_.scale);
     }
     candidate.inliers = near(pool, candidate, candidate.eps);

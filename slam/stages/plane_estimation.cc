@@ -15,7 +15,7 @@ constexpr int kSubsets = 12;
 /// Share of the support in each subset [P].
 constexpr double kSubsetShare = 0.6;
 /// Points that a re-estimation looks at; more would only take time.
-constexpr int kMostPoints = 400;
+constexpr int kMostPoints = 250;
 /// Growth of the score that is worth a new equation.
 constexpr double kBetter = 1.001;
 /// Distance, in bands, beyond which support is let go.

@@ -78,37 +78,28 @@ std::vector<Eigen::Vector3d> thinned(const std::vector<Eigen::Vector3d>& points)
   return result;
 }
 
-struct Growing {
-  PlaneId plane = kNone;
-  std::vector<Eigen::Vector3d> support;
-  double link = 0.0;
-  double eps = 0.0;  ///< own_eps
+int min_explained(const GrowingPlane& growing) {
+  return static_cast<int>(growing.support.size()) < kLargeSupport ? kMinExplained
+                                                                  : kMinExplainedByLarge;
+}
 
-  int min_explained() const {
-    return static_cast<int>(support.size()) < kLargeSupport ? kMinExplained : kMinExplainedByLarge;
-  }
-  bool is_near(const Eigen::Vector3d& point) const {
-    int near = 0;
-    for (const Eigen::Vector3d& other : support) {
-      if ((other - point).squaredNorm() < link * link && ++near >= kMinNeighbours) return true;
-    }
+void extend_box(GrowingPlane& growing, const Eigen::Vector3d& point) {
+  growing.low = growing.low.cwiseMin(point);
+  growing.high = growing.high.cwiseMax(point);
+}
+
+bool is_near(GrowingPlane& growing, const Eigen::Vector3d& point, const PlaneScale& scale) {
+  if (!growing.link) growing.link = link_of(growing.support, scale);
+  const double link = *growing.link;
+  if ((point.array() < growing.low.array() - link).any() ||
+      (point.array() > growing.high.array() + link).any()) {
     return false;
   }
-};
-
-std::vector<Growing> growing_planes(const Map& map, const PlaneContext& context) {
-  std::vector<Growing> result;
-  const std::vector<PlaneSupport> support = gather_support(map, context);
-  for (const Plane& plane : map.planes) {
-    Growing growing;
-    growing.plane = plane.id;
-    growing.support = thinned(support[plane.id].points.positions);
-    growing.link = link_of(growing.support, context.scale);
-    growing.eps =
-        own_eps({plane.normal, plane.offset}, support[plane.id].points, context.scale);
-    result.push_back(std::move(growing));
+  int near = 0;
+  for (const Eigen::Vector3d& other : growing.support) {
+    if ((other - point).squaredNorm() < link * link && ++near >= kMinNeighbours) return true;
   }
-  return result;
+  return false;
 }
 
 /// Nearest image neighbours of point i that the plane explains too, whoever owns them: without
@@ -125,21 +116,23 @@ int explained_neighbours(const KeyframePoints& shown, int i, const Plane& plane,
 }
 
 /// The nearest plane that takes point i, or null.
-Growing* taker_of(const Map& map, std::vector<Growing>& planes, const KeyframePoints& shown, int i,
-                  const MaskVotes& masks) {
+GrowingPlane* taker_of(const Map& map, std::vector<GrowingPlane>& planes,
+                       const KeyframePoints& shown, int i, const MaskVotes& masks,
+                       const PlaneScale& scale) {
   const PlanePoints& points = shown.points;
   double best = HUGE_VAL;
-  Growing* taker = nullptr;
-  for (Growing& growing : planes) {
+  GrowingPlane* taker = nullptr;
+  for (GrowingPlane& growing : planes) {
     const Plane& plane = map.planes.at(growing.plane);
     const double distance = std::abs(plane.signed_distance(points.positions[i]));
     if (distance >= std::min(best, points.band[i] * growing.eps)) continue;
     if (points.view_from[i].dot(plane.normal) <= 0.0) continue;
-    if (!masks.allow(shown.label[i], plane.id) || !growing.is_near(points.positions[i])) continue;
+    if (!masks.allow(shown.label[i], plane.id)) continue;
     if (!shown.has_masks &&
-        explained_neighbours(shown, i, plane, growing.eps) < growing.min_explained()) {
+        explained_neighbours(shown, i, plane, growing.eps) < min_explained(growing)) {
       continue;
     }
+    if (!is_near(growing, points.positions[i], scale)) continue;
     best = distance;
     taker = &growing;
   }
@@ -163,21 +156,43 @@ void note_observers(Map& map, KeyframeId keyframe, const KeyframePoints& shown) 
 
 }  // namespace
 
-int expand_planes(Map& map, KeyframeId keyframe, const PlaneContext& context,
-                  KeyframePoints& shown) {
+void prepare_growth(const Map& map, const PlaneContext& context,
+                    std::vector<GrowingPlane>& planes) {
+  const auto is_new = [&](const Plane& plane) {
+    return std::none_of(planes.begin(), planes.end(),
+                        [&](const GrowingPlane& known) { return known.plane == plane.id; });
+  };
+  std::vector<PlaneSupport> support;
+  for (const Plane& plane : map.planes) {
+    if (!is_new(plane)) continue;
+    if (support.empty()) support = gather_support(map, context);
+    const PlanePoints& points = support[static_cast<std::size_t>(plane.id)].points;
+    GrowingPlane growing;
+    growing.plane = plane.id;
+    growing.support = thinned(points.positions);
+    growing.low.setConstant(HUGE_VAL);
+    growing.high.setConstant(-HUGE_VAL);
+    for (const Eigen::Vector3d& point : growing.support) extend_box(growing, point);
+    growing.eps = own_eps({plane.normal, plane.offset}, points, context.scale);
+    planes.push_back(std::move(growing));
+  }
+}
+
+int expand_planes(Map& map, KeyframeId keyframe, const PlaneContext& context, KeyframePoints& shown,
+                  std::vector<GrowingPlane>& planes) {
   if (map.planes.empty()) return 0;
   const MaskVotes masks(shown, map.planes.next_id());
-  std::vector<Growing> planes = growing_planes(map, context);
   int joined = 0;
   for (int round = 0, gained = 1; round < kRounds && gained > 0; ++round) {
     gained = 0;
     for (int i = 0; i < shown.size(); ++i) {
       if (shown.plane[i] != kNone) continue;
-      Growing* taker = taker_of(map, planes, shown, i, masks);
+      GrowingPlane* taker = taker_of(map, planes, shown, i, masks, context.scale);
       if (taker == nullptr) continue;
       Plane& plane = map.planes.at(taker->plane);
       shown.plane[i] = plane.id;
       taker->support.push_back(shown.points.positions[i]);
+      extend_box(*taker, shown.points.positions[i]);
       plane.stalled_keyframes = 0;
       ++gained;
       if (shown.landmark[i] == kNone) {

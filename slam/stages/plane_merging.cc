@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
+#include <set>
+#include <utility>
 
 #include "slam/geometry/point_clusters.h"
 #include "slam/stages/plane_steps.h"
@@ -42,6 +45,40 @@ bool extents_touch(const PlanePoints& a, const PlanePoints& b, const PlaneScale&
   return gap_between(points_a, points_b) < link;
 }
 
+/// Pairs (lower id first) of planes that one mask instance shows together.
+class SharedMasks {
+ public:
+  explicit SharedMasks(const KeyframePoints& shown) {
+    std::map<std::pair<int, PlaneId>, int> count;
+    for (int i = 0; i < shown.size(); ++i) {
+      if (shown.label[i] > 0 && shown.plane[i] != kNone) ++count[{shown.label[i], shown.plane[i]}];
+    }
+    for (const auto& [a, count_a] : count) {
+      for (const auto& [b, count_b] : count) {
+        if (a.first != b.first || a.second >= b.second) continue;
+        if (count_a >= kMinShared && count_b >= kMinShared) pairs_.insert({a.second, b.second});
+      }
+    }
+  }
+  bool contain(PlaneId a, PlaneId b) const {
+    return pairs_.contains({std::min(a, b), std::max(a, b)});
+  }
+  /// After `from` has become part of `into`.
+  void rename(PlaneId from, PlaneId into) {
+    std::set<std::pair<PlaneId, PlaneId>> renamed;
+    for (auto [a, b] : pairs_) {
+      if (a == from) a = into;
+      if (b == from) b = into;
+      if (a != b) renamed.insert({std::min(a, b), std::max(a, b)});
+    }
+    pairs_ = std::move(renamed);
+  }
+
+ private:
+  static constexpr int kMinShared = 3;
+  std::set<std::pair<PlaneId, PlaneId>> pairs_;
+};
+
 PlaneSupport joined(const PlaneSupport& a, const PlaneSupport& b) {
   const auto split = [](const auto& vector, const PlaneSupport& support) {
     return vector.begin() + static_cast<std::ptrdiff_t>(support.landmarks.size());
@@ -77,15 +114,17 @@ bool fits_jointly(const Plane& a, const PlaneSupport& support_a, const PlaneSupp
 }
 
 bool same_plane(const Plane& a, const Plane& b, const PlaneSupport& support_a,
-                const PlaneSupport& support_b, const PlaneContext& context) {
+                const PlaneSupport& support_b, const SharedMasks& masks,
+                const PlaneContext& context) {
   if (support_a.points.size() == 0 || support_b.points.size() == 0) return false;
   if (context.options.merge == PlaneMerge::kPaper) return same_by_paper(a, b, context.scale);
   if (a.normal.dot(b.normal) < kMinCosine) return false;
   const double limit = kMaxCentroidDistance * context.scale.eps_d;
   if (std::abs(a.signed_distance(centroid_of(support_b.points))) > limit) return false;
   if (std::abs(b.signed_distance(centroid_of(support_a.points))) > limit) return false;
-  return extents_touch(support_a.points, support_b.points, context.scale) &&
-         fits_jointly(a, support_a, support_b, context);
+  return fits_jointly(a, support_a, support_b, context) &&
+         (masks.contain(a.id, b.id) ||
+          extents_touch(support_a.points, support_b.points, context.scale));
 }
 
 template <typename T>
@@ -120,15 +159,18 @@ void take_over(Map& map, PlaneId into, PlaneId from, PlaneSupport& support_into,
 
 }  // namespace
 
-int merge_planes(Map& map, const PlaneContext& context) {
+int merge_planes(Map& map, const PlaneContext& context, const KeyframePoints& shown) {
+  SharedMasks masks(shown);
   std::vector<PlaneSupport> support = gather_support(map, context);
   int merged = 0;
   for (PlaneId a = 0; a < map.planes.next_id(); ++a) {
     for (PlaneId b = a + 1; b < map.planes.next_id(); ++b) {
       if (!map.planes.contains(a) || !map.planes.contains(b)) continue;
-      if (!same_plane(map.planes.at(a), map.planes.at(b), support[a], support[b], context))
+      if (!same_plane(map.planes.at(a), map.planes.at(b), support[a], support[b], masks, context)) {
         continue;
+      }
       take_over(map, a, b, support[a], support[b], context);
+      masks.rename(b, a);
       ++merged;
       b = a;  // what the merged plane now touches may have been passed
     }

@@ -16,7 +16,7 @@ struct PlausibilityOptions {
   int min_coherent_neighbours = 2;  ///< of kCoherenceNeighbours; an inlier with fewer is dropped
   double min_view_cosine = 0.1;     ///< mean, of viewing rays to the normal
   double min_breadth = 1.5;  ///< standard deviation along the shorter side, in the candidate's eps
-  double min_slimness = 0.07;       ///< of the shorter side over the longer
+  double min_slimness = 0.07;  ///< of the shorter side over the longer
 };
 inline constexpr int kCoherenceNeighbours = 6;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <tuple>
 
 #include "slam/geometry/depth_noise.h"
@@ -102,14 +103,16 @@ std::vector<PlaneSupport> gather_support(const Map& map, const PlaneContext& con
     support.points.view_from.push_back(landmark.view_from);
     support.points.band.push_back(band_of(context, std::max(z, 0.4)));
   }
+  std::vector<std::optional<Eigen::Vector3d>> centres(
+      static_cast<std::size_t>(map.keyframes.next_id()));
   for (const Plane& plane : map.planes) {
     PlanePoints& points = result[static_cast<std::size_t>(plane.id)].points;
     for (std::size_t i = 0; i < plane.depth_points.size(); ++i) {
       const DepthAnchor& anchor = plane.depth_anchors[i];
-      const Pose cam_from_world = map.keyframe_pose(anchor.keyframe);
+      std::optional<Eigen::Vector3d>& centre = centres[static_cast<std::size_t>(anchor.keyframe)];
+      if (!centre) centre = map.keyframe_pose(anchor.keyframe).inverse().translation();
       points.positions.push_back(plane.depth_points[i]);
-      points.view_from.push_back(
-          (cam_from_world.inverse().translation() - plane.depth_points[i]).normalized());
+      points.view_from.push_back((*centre - plane.depth_points[i]).normalized());
       points.band.push_back(band_of(context, anchor.point_cam.z()));
     }
   }
@@ -162,31 +165,43 @@ void add_depth_point(Plane& plane, KeyframeId keyframe, const Eigen::Vector3d& p
 }
 
 void bound_depth_points(Plane& plane, int most, double cell) {
-  while (static_cast<int>(plane.depth_points.size()) > most) {
-    const Pose plane_from_world = plane.world_from_plane().inverse();
+  // With some slack, so that not every keyframe costs a thinning.
+  if (2 * static_cast<int>(plane.depth_points.size()) <= 3 * most) return;
+  const Pose plane_from_world = plane.world_from_plane().inverse();
+  std::vector<Eigen::Vector2d> flat;
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(HUGE_VAL);
+  Eigen::Vector2d high = -low;
+  for (const Eigen::Vector3d& point : plane.depth_points) {
+    flat.push_back((plane_from_world * point).head<2>());
+    low = low.cwiseMin(flat.back());
+    high = high.cwiseMax(flat.back());
+  }
+  // At most so fine can a grid be whose cells are all taken.
+  cell = std::max(cell, 0.5 * std::sqrt((high - low).prod() / most));
+  std::vector<std::size_t> kept;
+  do {
     // (cell column, cell row, -index): sorted, the latest of each cell comes first.
     std::vector<std::tuple<int, int, int>> cells;
-    for (std::size_t i = 0; i < plane.depth_points.size(); ++i) {
-      const Eigen::Vector3d p = plane_from_world * plane.depth_points[i] / cell;
-      cells.emplace_back(static_cast<int>(std::floor(p.x())), static_cast<int>(std::floor(p.y())),
-                         -static_cast<int>(i));
+    for (std::size_t i = 0; i < flat.size(); ++i) {
+      cells.emplace_back(static_cast<int>(std::floor(flat[i].x() / cell)),
+                         static_cast<int>(std::floor(flat[i].y() / cell)), -static_cast<int>(i));
     }
     std::sort(cells.begin(), cells.end());
-    std::vector<std::size_t> kept;
+    kept.clear();
     for (std::size_t k = 0; k < cells.size(); ++k) {
       const auto& [col, row, index] = cells[k];
       if (k > 0 && std::get<0>(cells[k - 1]) == col && std::get<1>(cells[k - 1]) == row) continue;
       kept.push_back(static_cast<std::size_t>(-index));
     }
-    std::sort(kept.begin(), kept.end());
-    for (std::size_t k = 0; k < kept.size(); ++k) {
-      plane.depth_points[k] = plane.depth_points[kept[k]];
-      plane.depth_anchors[k] = plane.depth_anchors[kept[k]];
-    }
-    plane.depth_points.resize(kept.size());
-    plane.depth_anchors.resize(kept.size());
     cell *= 1.3;
+  } while (static_cast<int>(kept.size()) > most);
+  std::sort(kept.begin(), kept.end());
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    plane.depth_points[k] = plane.depth_points[kept[k]];
+    plane.depth_anchors[k] = plane.depth_anchors[kept[k]];
   }
+  plane.depth_points.resize(kept.size());
+  plane.depth_anchors.resize(kept.size());
 }
 
 void erase_plane(Map& map, PlaneId plane) {

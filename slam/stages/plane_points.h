@@ -67,8 +67,8 @@ void update_figures(Plane& plane, const PlaneSupport& support, const PlaneContex
 /// Adds a depth sample to the plane.
 void add_depth_point(Plane& plane, KeyframeId keyframe, const Eigen::Vector3d& position,
                      const Eigen::Vector3f& point_cam);
-/// Thins depth points to at most `most`, evenly over the plane: one per cell of a grid that is made
-/// coarser until they fit; the latest stay.
+/// Where there are more than 1.5 times `most` depth points, thins them to at most `most`, evenly
+/// over the plane: one per cell of a grid that is made coarser until they fit; the latest stay.
 void bound_depth_points(Plane& plane, int most, double cell);
 
 /// Disowns the plane's landmarks and erases it.

@@ -69,9 +69,10 @@ double chi2_of(const Map& map, const Observation& observation, const Eigen::Vect
   return squared / (sigma * sigma);
 }
 
-/// Whether the landmark's sights allow the move along the normal: each must still pass its test, and
-/// together they may not speak against it, which is a test of one degree of freedom [D]. A point
-/// that many keyframes hold is not dragged off by a plane that is known less well than the point.
+/// Whether the landmark's sights allow the move along the normal: each must still pass its test,
+/// and together they may not speak against it, which is a test of one degree of freedom [D]. A
+/// point that many keyframes hold is not dragged off by a plane that is known less well than the
+/// point.
 bool sights_allow(const Map& map, const Landmark& landmark, const Eigen::Vector3d& projected,
                   const PlaneContext& context) {
   double rise = 0.0;

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
 #include "slam/stages/plane_points.h"
 
 namespace planecast::slam {
@@ -12,12 +16,23 @@ namespace planecast::slam {
 /// removed.
 int cull_far_landmarks(Map& map, KeyframeId keyframe, const PlaneContext& context);
 
+/// A plane as it grows during one keyframe.
+struct GrowingPlane {
+  PlaneId plane = kNone;
+  std::vector<Eigen::Vector3d> support;  ///< evenly chosen, and what has joined since
+  Eigen::Vector3d low, high;             ///< box about it
+  double eps = 0.0;                      ///< own_eps
+  std::optional<double> link;            ///< link_of, once it was needed
+};
+/// Adds the planes of the map that `planes` lacks.
+void prepare_growth(const Map& map, const PlaneContext& context, std::vector<GrowingPlane>& planes);
+
 /// Unowned points of the keyframe within their band of a plane join it if they were seen from its
 /// normal's side, lie next to its support and, where there are masks, are in a mask that is this
 /// plane's. Counts planes that gain nothing as stalled. Returns the number of landmarks that
 /// joined.
-int expand_planes(Map& map, KeyframeId keyframe, const PlaneContext& context,
-                  KeyframePoints& shown);
+int expand_planes(Map& map, KeyframeId keyframe, const PlaneContext& context, KeyframePoints& shown,
+                  std::vector<GrowingPlane>& planes);
 
 /// Judges by coherence and contrast whether the planes in an image without masks still look like
 /// planes, and counts in Plane::doubts where not.
@@ -32,9 +47,10 @@ int drop_weak_planes(Map& map, const PlaneContext& context);
 /// where the image was not segmented. Returns their number.
 int find_planes(Map& map, KeyframeId keyframe, const PlaneContext& context, KeyframePoints& shown);
 
-/// Merges planes that are the same; the lower id survives with its frame. Returns the number merged
-/// away.
-int merge_planes(Map& map, const PlaneContext& context);
+/// Merges planes that are the same; the lower id survives with its frame. Planes of one height
+/// whose parts lie apart are the same only where a mask of this keyframe covers both. Returns the
+/// number merged away.
+int merge_planes(Map& map, const PlaneContext& context, const KeyframePoints& shown);
 
 /// New equations for the planes that the keyframe sees: the best of least-squares fits to random 60
 /// % subsets of the support, taken only if it beats the present one. Support that is then farther

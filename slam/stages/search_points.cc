@@ -21,9 +21,9 @@ namespace {
 
 /// Steps along an epipolar line, in pixels of the level: a patch's correlation falls over about
 /// two.
-constexpr double kStepPx = 0.7;
+constexpr double kStepPx = 1.0;
 /// Correlations so near to the best place, in steps, belong to the same peak.
-constexpr int kPeakSteps = 4;
+constexpr int kPeakSteps = 3;
 /// How far alignment may lead from the best step, in pixels of the level.
 constexpr float kMaxSettlePx = 2.0F;
 
@@ -176,8 +176,8 @@ class EpipolarSearch {
   std::optional<Eigen::Vector2f> unambiguous_best() const {
     if (scores_.empty()) return std::nullopt;
     const auto best = std::max_element(scores_.begin(), scores_.end());
-    // A step beside the place, the correlation is a little less than settled.
-    constexpr double kBesideShare = 0.85;
+    // Up to half a pixel and half a step beside the place, the correlation is less than settled.
+    constexpr double kBesideShare = 0.75;
     if (*best < kBesideShare * options_.min_correlation) return std::nullopt;
     const auto at = best - scores_.begin();
     for (std::ptrdiff_t s = 0; s < static_cast<std::ptrdiff_t>(scores_.size()); ++s) {

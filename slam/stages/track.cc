@@ -1,6 +1,7 @@
 #include "slam/stages/track.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
 
 #include "slam/features/matching.h"
@@ -25,6 +26,32 @@ KeyframeId reference_of(const Map& map, const std::vector<LandmarkId>& landmarks
     }
   }
   return best;
+}
+
+/// Mean absolute difference between neighbouring pixels, in grey values.
+double sharpness(const ImagePyramid& pyramid) {
+  const cv::Mat& image = pyramid.levels[std::min<std::size_t>(1, pyramid.levels.size() - 1)];
+  if (image.cols < 2 || image.rows < 2) return 0.0;
+  double sum = 0.0;
+  for (int y = 0; y < image.rows; ++y) {
+    const uchar* row = image.ptr<uchar>(y);
+    int line = 0;
+    for (int x = 1; x < image.cols; ++x) line += std::abs(row[x] - row[x - 1]);
+    sum += line;
+  }
+  return sum / (static_cast<double>(image.cols - 1) * image.rows);
+}
+
+/// For the user: what the image lacks, against the last one that was tracked.
+std::string why_lost(const ImageFeatures& image, const ImageFeatures& last_tracked) {
+  constexpr int kFewFeatures = 200;
+  constexpr double kBlurredShare = 0.6;
+  if (image.features->size() < kFewFeatures) return "no texture";
+  if (last_tracked.pyramid != nullptr &&
+      sharpness(*image.pyramid) < kBlurredShare * sharpness(*last_tracked.pyramid)) {
+    return "blur";
+  }
+  return "too few matches";
 }
 
 }  // namespace
@@ -249,7 +276,7 @@ TrackResult Tracker::track_features(const ImageFeatures& image, const Map& map) 
     }
   }
   if (!result.tracked) {
-    result.reason = image.features->size() < 200 ? "too few features" : "too few matches";
+    result.reason = why_lost(image, last_image_);
   }
   result.estimate = std::move(estimate);
   return result;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "slam/optimize/depth_plane_cost.h"
 #include "test/unit/slam/synthetic_views.h"
 
 namespace planecast::slam {
@@ -107,6 +108,18 @@ TEST(PointPlaneCost, JacobiansAreTheNumericOnes) {
     check_jacobians(PointPlaneCost(0.01),
                     {{as_values(gaussian3(random)), as_values(normal), {gaussian(random)}},
                      {nullptr, nullptr, nullptr}});
+  }
+}
+
+TEST(DepthPlaneCost, JacobiansAreTheNumericOnes) {
+  Random random(seed_of("DepthPlaneCost.JacobiansAreTheNumericOnes"));
+  const PoseManifold manifold;
+  for (int i = 0; i < 20; ++i) {
+    const Pose pose = pose_at(2.0 * gaussian3(random), gaussian3(random));
+    const Eigen::Vector3d normal = gaussian3(random).normalized();
+    check_jacobians(DepthPlaneCost(gaussian3(random), 0.01),
+                    {{as_values(block_from_pose(pose)), as_values(normal), {gaussian(random)}},
+                     {&manifold, nullptr, nullptr}});
   }
 }
 
