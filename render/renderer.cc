@@ -14,6 +14,7 @@
 #include "render/passes/model_passes.h"
 #include "render/passes/models.h"
 #include "render/passes/occluders.h"
+#include "render/passes/pass_clock.h"
 #include "render/passes/surfaces.h"
 #include "render/passes/targets.h"
 #include "render/passes/view.h"
@@ -47,6 +48,15 @@ void check_camera(const Camera& camera) {
 int power_of_two(int size) { return static_cast<int>(std::bit_floor(static_cast<unsigned>(size))); }
 
 bool casts(const Sun& sun) { return sun.casts_shadow && sun.radiance != glm::vec3(0.0F); }
+
+/// Whether the shadows are the same in every frame. Told by the scene, not by the last frame, so
+/// that a picture never depends on those drawn before it.
+bool stands_still(const LayerScene& scene) {
+  return std::ranges::all_of(scene.instances, [](const Instance& instance) {
+    return instance.model == nullptr || instance.animation < 0 ||
+           static_cast<std::size_t>(instance.animation) >= instance.model->animations.size();
+  });
+}
 
 float shadow_margin_texels(const Sun& sun) { return 3.0F + 2.0F * sun.softness; }
 
@@ -120,6 +130,7 @@ struct Renderer::Impl {
   std::optional<GeometryTarget> geometry;
   TextureHandle occluder_depth;
   Layer::Rect occluder_depth_rect;
+  PassClock clock{gl, options.time_passes};
 };
 
 void Renderer::Impl::begin_opaque_state() const {
@@ -179,12 +190,14 @@ GLuint Renderer::Impl::upload_occluder_depth(const LayerScene& scene, const Wind
 
 Layer Renderer::Impl::draw_layer(const LayerScene& scene, const Camera& camera) {
   check_camera(camera);
+  clock.start();
   Layer layer;
   layer.rgba = ImageU8(camera.width, camera.height, 4);
-  layer.depth = ImageF(camera.width, camera.height, 1);
+  if (scene.with_depth) layer.depth = ImageF(camera.width, camera.height, 1);
   const std::vector<DrawItem>& items = models.pose(scene.instances);
   if (items.empty()) return layer;
 
+  clock.end_of("pose");
   const std::vector<glm::vec3> points = world_box_points(items);
   const Sun& sun = scene.light.sun;
   const std::uint64_t signature = caster_signature(models, sun);
@@ -195,16 +208,24 @@ Layer Renderer::Impl::draw_layer(const LayerScene& scene, const Camera& camera) 
         items, sun, false, signature);
     shadow = &shadow_map;
   }
-  const CatcherInput catching{
-      &scene, &camera, &items, &points, shadow, signature, options.simplify_px};
+  CatcherInput catching;
+  catching.scene = &scene;
+  catching.camera = &camera;
+  catching.items = &items;
+  catching.caster_points = &points;
+  catching.shadow = shadow;
+  catching.casters = signature;
+  catching.still = stands_still(scene);
+  catching.detail_texels = options.simplify_px;
   catchers.prepare(shaders, catching);
+  clock.end_of("catcher maps");
 
   Layer::Rect bounds;
   for (std::size_t i = 0; i < points.size(); i += 8) {
     const auto first = points.begin() + static_cast<std::ptrdiff_t>(i);
     bounds = united(bounds, projected_bounds(camera, {first, first + 8}));
   }
-  const std::vector<glm::vec3> dark = catchers.touched_points();
+  const std::vector<glm::vec3> dark = catchers.touched_points(catching);
   for (std::size_t i = 0; i < dark.size(); i += 4) {
     const auto first = dark.begin() + static_cast<std::ptrdiff_t>(i);
     bounds = united(bounds, projected_bounds(camera, {first, first + 4}));
@@ -223,12 +244,15 @@ Layer Renderer::Impl::draw_layer(const LayerScene& scene, const Camera& camera) 
   shading.detail_px = options.simplify_px;
   draw_layer_color(scene, camera, catching, shading, window, layer);
 
-  geometry->begin(window);
-  begin_opaque_state();
-  occluders.draw(shaders, scene.occluders, camera);
-  begin_opaque_state();
-  model_passes.draw_geometry(items, shading);
-  geometry->read_depth(window, layer.depth);
+  if (scene.with_depth) {
+    geometry->begin(window);
+    begin_opaque_state();
+    occluders.draw(shaders, scene.occluders, camera);
+    begin_opaque_state();
+    model_passes.draw_geometry(items, shading);
+    geometry->read_depth(window, layer.depth);
+    clock.end_of("depth");
+  }
   check_errors();
   return layer;
 }
@@ -239,11 +263,15 @@ void Renderer::Impl::draw_layer_color(const LayerScene& scene, const Camera& cam
   color->begin(window);
   begin_opaque_state();
   occluders.draw(shaders, scene.occluders, camera);
+  clock.end_of("clear and occluders");
   catchers.draw(shaders, catching, shading.occluder_depth,
                 kCatcherTolerance * shading.occluder_tolerance);
   begin_opaque_state();
+  clock.end_of("catchers");
   model_passes.draw_color(*catching.items, shading);
+  clock.end_of("objects");
   color->resolve(window, layer.rgba);
+  clock.end_of("resolve and read");
 }
 
 OpaqueImages Renderer::Impl::draw_opaque(const OpaqueScene& scene, const Camera& camera) {
@@ -314,6 +342,8 @@ void Renderer::forget() {
   impl_->catchers.clear();
   impl_->shadow_signature = 0;
 }
+
+std::map<std::string, double> Renderer::pass_times_ms() { return impl_->clock.take(); }
 
 std::string Renderer::description() const {
   impl_->context->make_current();

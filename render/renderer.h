@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 
@@ -21,6 +22,7 @@ struct RendererOptions {
   /// that lack them: the same bytes on any x86-64, at 1.25 to 1.6 times the time. Holds for the
   /// whole process from its first context on; for golden tests.
   bool portable_floats = false;
+  bool time_passes = false;  ///< for pass_times_ms(); slows down
 };
 
 /// Draws offscreen; the same bytes for the same input. Not thread-safe: one renderer, one thread.
@@ -38,6 +40,8 @@ class Renderer {
   /// again with the same `scene` address and unchanged surfaces to reuse them, or forget() first.
   OpaqueImages draw_opaque(const OpaqueScene& scene, const Camera& camera);
   void forget();
+  /// Milliseconds by pass since the last call, when they are timed.
+  std::map<std::string, double> pass_times_ms();
   /// "4.5 (Core Profile) Mesa ..." for the record.
   std::string description() const;
 

@@ -70,10 +70,12 @@ struct LayerScene {
   const ImageF* occluder_depth = nullptr;  ///< optional, metres along z, 0 = unknown; camera's size
   Light light;
   float shadow_strength = 1.0F;  ///< 0 none .. 1 physically by the light
+  bool with_depth = true;        ///< Layer::depth is wanted; a second pass over the meshes
 };
 
 /// RGBA8, sRGB-encoded, premultiplied: out = layer.rgb + (1 - layer.a) * frame. A shadow is black
-/// with alpha. Depth in metres along z of the objects alone, 0 where there is none.
+/// with alpha. Depth in metres along z of the objects alone, 0 where there is none; empty when the
+/// scene does not want it.
 struct Layer {
   ImageU8 rgba;
   ImageF depth;

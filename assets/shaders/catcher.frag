@@ -3,6 +3,11 @@
 in vec2 v_plane;
 in vec3 v_world;
 
+#ifdef BAKED
+uniform sampler2D u_baked;  // shares lost of the surroundings' light and the sun's, inside
+uniform vec2 u_baked_min;
+uniform vec2 u_baked_max;
+#endif
 uniform sampler2D u_mask;  // distance to the polygon's edge, metres
 uniform vec2 u_mask_min;
 uniform vec2 u_mask_max;
@@ -60,24 +65,39 @@ float sun_hidden() {
 }
 #endif
 
-void main() {
+// Shares of the light that are hidden, surroundings' and sun's, and how far inside the polygon.
+vec3 hidden_and_inside() {
   float edge = texture(u_mask, (v_plane - u_mask_min) / (u_mask_max - u_mask_min)).r;
-  float inside = smoothstep(0.0, max(u_edge_softness_m, 1e-6), edge);
-  float lost = 0.0;
+  vec3 found = vec3(0.0, 0.0, smoothstep(0.0, max(u_edge_softness_m, 1e-6), edge));
 #ifdef CONTACT
   vec2 share = (v_plane - u_contact_min) / (u_contact_max - u_contact_min);
   if (all(greaterThan(share, vec2(0.0))) && all(lessThan(share, vec2(1.0)))) {
-    lost += (1.0 - u_sun_share) * u_contact_strength * texture(u_contact, share).r;
+    found.x = u_contact_strength * texture(u_contact, share).r;
   }
 #endif
 #ifdef SUN
-  lost += u_sun_share * sun_hidden();
+  found.y = sun_hidden();
 #endif
+  return found;
+}
+
+void main() {
+#ifdef BAKED
+  // Seen at a slant, the level for the longer side of the footprint would blur across the shorter one.
+  vec3 found = texture(u_baked, (v_plane - u_baked_min) / (u_baked_max - u_baked_min), -1.0).rgb;
+#else
+  vec3 found = hidden_and_inside();
+#endif
+#ifdef BAKE
+  o_color = vec4(found, 1.0);
+#else
+  float lost = (1.0 - u_sun_share) * found.x + u_sun_share * found.y;
   // The video is encoded: multiplying light by k multiplies it by about k^(1 / 2.2).
   float alpha = 1.0 - pow(clamp(1.0 - u_strength * lost, 0.0, 1.0), 1.0 / 2.2);
-  alpha *= inside;
+  alpha *= found.z;
 #ifdef OCCLUDER_DEPTH
   alpha *= depth_visibility();
 #endif
   o_color = vec4(0.0, 0.0, 0.0, alpha);
+#endif
 }

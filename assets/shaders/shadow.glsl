@@ -19,12 +19,11 @@ float sun_visibility(vec3 world, vec3 normal, float n_dot_l) {
   float slope = sqrt(max(0.0, 1.0 - n_dot_l * n_dot_l));
   vec3 at = shadow_coordinates(world + normal * reach * (0.3 + slope));
   at.z -= 0.5 * u_shadow_texel_m / u_shadow_depth_m;
-  float step = u_shadow_radius_m / u_shadow_extent_m;
-  float sum = 0.0;
-  for (int y = -1; y <= 1; ++y) {
-    for (int x = -1; x <= 1; ++x) {
-      sum += texture(u_shadow_map, vec3(at.xy + vec2(x, y) * step, at.z));
-    }
-  }
-  return sum / 9.0;
+  // Four bilinear comparisons, turned so that neither rows nor columns of texels coincide.
+  vec2 step = vec2(0.9, 0.35) * (u_shadow_radius_m / u_shadow_extent_m);
+  float sum = texture(u_shadow_map, vec3(at.xy + step, at.z));
+  sum += texture(u_shadow_map, vec3(at.xy - step, at.z));
+  sum += texture(u_shadow_map, vec3(at.xy + vec2(-step.y, step.x), at.z));
+  sum += texture(u_shadow_map, vec3(at.xy + vec2(step.y, -step.x), at.z));
+  return 0.25 * sum;
 }

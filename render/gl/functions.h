@@ -48,6 +48,7 @@ class GlContext;
   X(PFNGLDRAWELEMENTSPROC, DrawElements)                                               \
   X(PFNGLENABLEPROC, Enable)                                                           \
   X(PFNGLENABLEVERTEXARRAYATTRIBPROC, EnableVertexArrayAttrib)                         \
+  X(PFNGLFINISHPROC, Finish)                                                           \
   X(PFNGLFRONTFACEPROC, FrontFace)                                                     \
   X(PFNGLGENERATETEXTUREMIPMAPPROC, GenerateTextureMipmap)                             \
   X(PFNGLGETERRORPROC, GetError)                                                       \

@@ -15,6 +15,8 @@ namespace {
 constexpr int kMaskSide = 160;
 /// Penumbrae are wide: the shadow map is averaged down to this.
 constexpr int kPenumbraSide = 512;
+/// Texels of a baked shadow: over a metre of table one is about a pixel.
+constexpr int kBakedSide = 768;
 
 /// Maps the region to the whole target, whatever the height.
 glm::mat4 clip_from_world_over(const PlaneFrame& frame, const PlaneRegion& region) {
@@ -77,12 +79,17 @@ void CatcherPass::prepare(ShaderLibrary& shaders, const CatcherInput& input) {
     signature.add(hash);
     signature.add(plan->sun);
     signature.add(plan->contact_region.empty());
+    signature.add(input.still);
+    signature.add(input.scene->light.sun.angular_radius_rad);
+    signature.add(patch.edge_softness_m);
+    Prepared prepared{*plan, &mask_of(patch, plan->frame, hash), &maps, patch.edge_softness_m};
     if (maps.signature != signature.value()) {
       maps.signature = signature.value();
       if (plan->sun && input.shadow != nullptr) make_penumbra(shaders, input, plan->frame, maps);
       if (!plan->contact_region.empty()) make_contact(shaders, input, *plan, maps);
+      if (input.still) bake(shaders, input, prepared, maps);
     }
-    prepared_.push_back({*plan, &mask_of(patch, plan->frame, hash), &maps, patch.edge_softness_m});
+    if (!prepared.drawn(input.still).empty()) prepared_.push_back(prepared);
   }
   std::erase_if(masks_, [](const auto& item) { return !item.second.used; });
 }
@@ -173,13 +180,98 @@ void CatcherPass::make_contact(ShaderLibrary& shaders, const CatcherInput& input
   gl_->DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-std::vector<glm::vec3> CatcherPass::touched_points() const {
+void CatcherPass::bake(ShaderLibrary& shaders, const CatcherInput& input, const Prepared& prepared,
+                       Maps& maps) {
+  if (!maps.baked) {
+    maps.baked = TextureHandle(*gl_);
+    gl_->TextureStorage2D(maps.baked.id(), std::bit_width(static_cast<unsigned>(kBakedSide)),
+                          GL_RGBA8, kBakedSide, kBakedSide);
+    set_filter(*gl_, maps.baked, GL_LINEAR_MIPMAP_LINEAR);
+    gl_->TextureParameteri(maps.baked.id(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    gl_->TextureParameteri(maps.baked.id(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  }
+  std::vector<std::string> defines = {"BAKE"};
+  if (!prepared.plan.contact_region.empty()) defines.emplace_back("CONTACT");
+  if (prepared.plan.sun) defines.emplace_back("SUN");
+  const Program& program = shaders.get("plane_quad.vert", "catcher.frag", defines);
+  begin_map(maps.baked.id(), kBakedSide);
+  program.use();
+  program.set("u_clip_from_world", clip_from_world_over(prepared.plan.frame, prepared.plan.region));
+  set_plane(program, prepared.plan.frame, prepared.plan.region);
+  set_shadow_inputs(program, input, prepared);
+  gl_->BindVertexArray(no_vertices_.id());
+  gl_->DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+  maps.dark = dark_part(prepared.plan.region);
+  gl_->GenerateTextureMipmap(maps.baked.id());
+}
+
+/// Reads the map that was just drawn: rows and columns with a share that shows after rounding.
+PlaneRegion CatcherPass::dark_part(const PlaneRegion& region) const {
+  constexpr std::uint8_t kVisible = 2;
+  const auto side = static_cast<std::size_t>(kBakedSide);
+  std::vector<std::uint8_t> texels(4 * side * side);
+  gl_->PixelStorei(GL_PACK_ALIGNMENT, 1);
+  gl_->PixelStorei(GL_PACK_ROW_LENGTH, 0);
+  gl_->ReadPixels(0, 0, kBakedSide, kBakedSide, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+  const glm::vec2 texel = region.size() / static_cast<float>(kBakedSide);
+  PlaneRegion dark = nothing();
+  for (std::size_t y = 0; y < side; ++y) {
+    for (std::size_t x = 0; x < side; ++x) {
+      const std::uint8_t* at = &texels[4 * (y * side + x)];
+      if (std::max(at[0], at[1]) < kVisible || at[2] == 0) continue;
+      const glm::vec2 corner(static_cast<float>(x), static_cast<float>(y));
+      dark.add(region.min + (corner - 1.0F) * texel);
+      dark.add(region.min + (corner + 2.0F) * texel);
+    }
+  }
+  return intersection(dark, region);
+}
+
+std::vector<glm::vec3> CatcherPass::touched_points(const CatcherInput& input) const {
   std::vector<glm::vec3> points;
   for (const Prepared& prepared : prepared_) {
-    const auto corners = prepared.plan.frame.corners(prepared.plan.region);
+    const auto corners = prepared.plan.frame.corners(prepared.drawn(input.still));
     points.insert(points.end(), corners.begin(), corners.end());
   }
   return points;
+}
+
+void CatcherPass::set_plane(const Program& program, const PlaneFrame& frame,
+                            const PlaneRegion& region) const {
+  program.set("u_origin", frame.origin);
+  program.set("u_axis_x", frame.x);
+  program.set("u_axis_y", frame.y);
+  program.set("u_region_min", region.min);
+  program.set("u_region_max", region.max);
+}
+
+void CatcherPass::set_shadow_inputs(const Program& program, const CatcherInput& input,
+                                    const Prepared& prepared) const {
+  gl_->BindTextureUnit(kUnitMask, prepared.mask->texture.id());
+  program.set("u_mask", static_cast<int>(kUnitMask));
+  program.set("u_mask_min", prepared.mask->region.min);
+  program.set("u_mask_max", prepared.mask->region.max);
+  program.set("u_edge_softness_m", prepared.edge_softness_m);
+  if (!prepared.plan.contact_region.empty()) {
+    gl_->BindTextureUnit(kUnitContact, prepared.maps->contact.id());
+    program.set("u_contact", static_cast<int>(kUnitContact));
+    program.set("u_contact_strength", prepared.plan.contact_strength);
+    program.set("u_contact_min", prepared.plan.contact_region.min);
+    program.set("u_contact_max", prepared.plan.contact_region.max);
+  }
+  if (prepared.plan.sun) {
+    const Sun& sun = input.scene->light.sun;
+    const ShadowProjection& projection = input.shadow->projection();
+    const int factor = std::max(1, input.shadow->size() / kPenumbraSide);
+    gl_->BindTextureUnit(kUnitHeights, prepared.maps->penumbra.id());
+    program.set("u_penumbra", static_cast<int>(kUnitHeights));
+    program.set("u_shadow_from_world", projection.clip_from_world);
+    program.set("u_penumbra_texel_m", projection.texel_m * static_cast<float>(factor));
+    program.set("u_penumbra_extent_m", projection.extent_m);
+    program.set("u_light_tangent", std::tan(std::clamp(sun.angular_radius_rad, 0.0F, 0.5F)));
+    program.set("u_farthest_gap_m", prepared.plan.farthest_gap_m);
+    program.set("u_smallest_radius_m", sun.softness * projection.texel_m);
+  }
 }
 
 void CatcherPass::draw(ShaderLibrary& shaders, const CatcherInput& input, GLuint occluder_depth,
@@ -193,45 +285,25 @@ void CatcherPass::draw(ShaderLibrary& shaders, const CatcherInput& input, GLuint
   gl_->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   gl_->BindVertexArray(no_vertices_.id());
   const Camera& camera = *input.camera;
-  const Sun& sun = input.scene->light.sun;
   for (const Prepared& prepared : prepared_) {
     std::vector<std::string> defines;
-    if (!prepared.plan.contact_region.empty()) defines.emplace_back("CONTACT");
-    if (prepared.plan.sun) defines.emplace_back("SUN");
+    if (input.still) defines.emplace_back("BAKED");
+    if (!input.still && !prepared.plan.contact_region.empty()) defines.emplace_back("CONTACT");
+    if (!input.still && prepared.plan.sun) defines.emplace_back("SUN");
     if (occluder_depth != 0) defines.emplace_back("OCCLUDER_DEPTH");
     const Program& program = shaders.get("plane_quad.vert", "catcher.frag", defines);
     program.use();
     program.set("u_clip_from_world", clip_from_camera(camera) * camera.camera_from_world);
-    program.set("u_origin", prepared.plan.frame.origin);
-    program.set("u_axis_x", prepared.plan.frame.x);
-    program.set("u_axis_y", prepared.plan.frame.y);
-    program.set("u_region_min", prepared.plan.region.min);
-    program.set("u_region_max", prepared.plan.region.max);
-    program.set("u_mask", static_cast<int>(kUnitMask));
-    program.set("u_mask_min", prepared.mask->region.min);
-    program.set("u_mask_max", prepared.mask->region.max);
-    program.set("u_edge_softness_m", prepared.edge_softness_m);
+    set_plane(program, prepared.plan.frame, prepared.drawn(input.still));
     program.set("u_sun_share", prepared.plan.sun_share);
     program.set("u_strength", std::clamp(input.scene->shadow_strength, 0.0F, 1.0F));
-    gl_->BindTextureUnit(kUnitMask, prepared.mask->texture.id());
-    if (!prepared.plan.contact_region.empty()) {
-      gl_->BindTextureUnit(kUnitContact, prepared.maps->contact.id());
-      program.set("u_contact", static_cast<int>(kUnitContact));
-      program.set("u_contact_strength", prepared.plan.contact_strength);
-      program.set("u_contact_min", prepared.plan.contact_region.min);
-      program.set("u_contact_max", prepared.plan.contact_region.max);
-    }
-    if (prepared.plan.sun) {
-      const ShadowProjection& projection = input.shadow->projection();
-      const int factor = std::max(1, input.shadow->size() / kPenumbraSide);
-      gl_->BindTextureUnit(kUnitHeights, prepared.maps->penumbra.id());
-      program.set("u_penumbra", static_cast<int>(kUnitHeights));
-      program.set("u_shadow_from_world", projection.clip_from_world);
-      program.set("u_penumbra_texel_m", projection.texel_m * static_cast<float>(factor));
-      program.set("u_penumbra_extent_m", projection.extent_m);
-      program.set("u_light_tangent", std::tan(std::clamp(sun.angular_radius_rad, 0.0F, 0.5F)));
-      program.set("u_farthest_gap_m", prepared.plan.farthest_gap_m);
-      program.set("u_smallest_radius_m", sun.softness * projection.texel_m);
+    if (input.still) {
+      gl_->BindTextureUnit(kUnitBaked, prepared.maps->baked.id());
+      program.set("u_baked", static_cast<int>(kUnitBaked));
+      program.set("u_baked_min", prepared.plan.region.min);
+      program.set("u_baked_max", prepared.plan.region.max);
+    } else {
+      set_shadow_inputs(program, input, prepared);
     }
     if (occluder_depth != 0) {
       gl_->BindTextureUnit(kUnitOccluderDepth, occluder_depth);

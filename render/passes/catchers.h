@@ -21,6 +21,7 @@ struct CatcherInput {
   const std::vector<glm::vec3>* caster_points = nullptr;  ///< corners of the items' boxes, world
   const ShadowMap* shadow = nullptr;                      ///< null: no sun shadow
   std::uint64_t casters = 0;                              ///< changes when casters or the sun do
+  bool still = false;  ///< no caster ever moves: shadows are baked once, not computed a frame
   float detail_texels = 0.0F;  ///< how far simplified meshes may be off in the maps
 };
 
@@ -34,7 +35,7 @@ class CatcherPass {
   /// Finds which catchers receive anything and makes their maps. Call before binding the target.
   void prepare(ShaderLibrary& shaders, const CatcherInput& input);
   /// Corners of the rectangles that may get dark, world.
-  std::vector<glm::vec3> touched_points() const;
+  std::vector<glm::vec3> touched_points(const CatcherInput& input) const;
   /// Blends black over the bound target; reads its depth, leaves it.
   void draw(ShaderLibrary& shaders, const CatcherInput& input, GLuint occluder_depth,
             float occluder_tolerance) const;
@@ -52,12 +53,16 @@ class CatcherPass {
     TextureHandle penumbra;
     TextureHandle contact;
     int contact_side = 0;
+    TextureHandle baked;  ///< what catcher.frag finds over the plan's region
+    PlaneRegion dark;     ///< the part of it that is not quite bright
   };
   struct Prepared {
     CatcherPlan plan;
     const Mask* mask = nullptr;
     const Maps* maps = nullptr;
     float edge_softness_m = 0.0F;
+
+    PlaneRegion drawn(bool still) const { return still ? maps->dark : plan.region; }
   };
 
   const Mask& mask_of(const PlanePatch& patch, const PlaneFrame& frame, std::uint64_t hash);
@@ -65,6 +70,12 @@ class CatcherPass {
                      Maps& maps);
   void make_contact(ShaderLibrary& shaders, const CatcherInput& input, const CatcherPlan& plan,
                     Maps& maps);
+  void bake(ShaderLibrary& shaders, const CatcherInput& input, const Prepared& prepared,
+            Maps& maps);
+  PlaneRegion dark_part(const PlaneRegion& region) const;
+  void set_shadow_inputs(const Program& program, const CatcherInput& input,
+                         const Prepared& prepared) const;
+  void set_plane(const Program& program, const PlaneFrame& frame, const PlaneRegion& region) const;
   void begin_map(GLuint texture, int size) const;
 
   const Gl* gl_;

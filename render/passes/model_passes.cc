@@ -77,6 +77,7 @@ std::vector<std::string> shading_variant(const DrawItem& item, const ShadingInpu
   };
   const bool sun = input.light->sun.radiance != glm::vec3(0.0F);
   when(has(material.base_color_map), "BASE_COLOR_MAP");
+  when(base_color_use(item) == TextureUse::kEncoded, "BASE_COLOR_ENCODED");
   when(material.alpha_mode == AlphaMode::kMask, "ALPHA_MASK");
   when(material.alpha_mode == AlphaMode::kMask && input.multisampled, "SAMPLE_COVERAGE");
   when(material.alpha_mode == AlphaMode::kBlend, "ALPHA_BLEND");
@@ -99,10 +100,10 @@ std::vector<std::string> shading_variant(const DrawItem& item, const ShadingInpu
 }  // namespace
 
 void ModelPasses::bind_map(const DrawItem& item, const Program& program, const TextureSlot& slot,
-                           bool srgb, unsigned unit, const char* name) const {
+                           TextureUse use, unsigned unit, const char* name) const {
   if (slot.texture < 0) return;
   const std::string prefix = std::string("u_") + name;
-  gl_->BindTextureUnit(unit, models_->texture(item, slot, srgb));
+  gl_->BindTextureUnit(unit, models_->texture(item, slot, use));
   program.set(prefix, static_cast<int>(unit));
   program.set(prefix + "_set", slot.uv_set);
   program.set(prefix + "_transform", slot.transform);
@@ -113,7 +114,8 @@ void ModelPasses::set_cut_out(const DrawItem& item, const Program& program) cons
   const bool mask = material.alpha_mode == AlphaMode::kMask;
   program.set("u_alpha_cutoff", mask ? material.alpha_cutoff : kBlendCutoff);
   program.set("u_alpha_factor", material.base_color.a);
-  bind_map(item, program, material.base_color_map, true, kUnitBaseColor, "base_color");
+  bind_map(item, program, material.base_color_map, base_color_use(item), kUnitBaseColor,
+           "base_color");
 }
 
 void ModelPasses::draw_depth(const std::vector<DrawItem>& items, const glm::mat4& clip_from_world,
@@ -176,7 +178,8 @@ void ModelPasses::draw_shaded(const DrawItem& item, const ShadingInput& input) c
   program.set("u_base_color_factor", material.base_color);
   program.set("u_alpha_cutoff", material.alpha_cutoff);
   program.set("u_exposure", input.exposure);
-  bind_map(item, program, material.base_color_map, true, kUnitBaseColor, "base_color");
+  bind_map(item, program, material.base_color_map, base_color_use(item), kUnitBaseColor,
+           "base_color");
   if (input.occluder_depth != 0) {
     gl_->BindTextureUnit(kUnitOccluderDepth, input.occluder_depth);
     program.set("u_occluder_depth", static_cast<int>(kUnitOccluderDepth));
@@ -205,11 +208,12 @@ void ModelPasses::set_lit(const DrawItem& item, const Program& program,
   program.set("u_emissive", material.emissive);
   program.set("u_normal_scale", material.normal_scale);
   program.set("u_occlusion_strength", material.occlusion_strength);
-  bind_map(item, program, material.metallic_roughness_map, false, kUnitMetallicRoughness,
-           "metallic_roughness");
-  bind_map(item, program, material.normal_map, false, kUnitNormal, "normal");
-  bind_map(item, program, material.occlusion_map, false, kUnitOcclusion, "occlusion");
-  bind_map(item, program, material.emissive_map, true, kUnitEmissive, "emissive_map");
+  bind_map(item, program, material.metallic_roughness_map, TextureUse::kNumbers,
+           kUnitMetallicRoughness, "metallic_roughness");
+  bind_map(item, program, material.normal_map, TextureUse::kNumbers, kUnitNormal, "normal");
+  bind_map(item, program, material.occlusion_map, TextureUse::kNumbers, kUnitOcclusion,
+           "occlusion");
+  bind_map(item, program, material.emissive_map, TextureUse::kColor, kUnitEmissive, "emissive_map");
   program.set("u_ambient_sh", std::span<const glm::vec3>(input.light->ambient_sh));
   program.set("u_eye", camera_position(*input.camera));
   program.set("u_to_light", glm::normalize(sun.direction_to_light));
@@ -226,26 +230,30 @@ void ModelPasses::set_layers(const DrawItem& item, const Program& program) const
   program.set("u_dielectric_f0", ratio * ratio);
   program.set("u_specular", material.specular);
   program.set("u_specular_color", material.specular_color);
-  bind_map(item, program, material.specular_map, false, kUnitSpecular, "specular_map");
-  bind_map(item, program, material.specular_color_map, true, kUnitSpecularColor,
+  bind_map(item, program, material.specular_map, TextureUse::kNumbers, kUnitSpecular,
+           "specular_map");
+  bind_map(item, program, material.specular_color_map, TextureUse::kColor, kUnitSpecularColor,
            "specular_color_map");
   program.set("u_transmission", material.transmission);
-  bind_map(item, program, material.transmission_map, false, kUnitTransmission, "transmission_map");
+  bind_map(item, program, material.transmission_map, TextureUse::kNumbers, kUnitTransmission,
+           "transmission_map");
   if (material.clearcoat > 0.0F) {
     program.set("u_clearcoat", material.clearcoat);
     program.set("u_clearcoat_roughness", material.clearcoat_roughness);
     program.set("u_clearcoat_normal_scale", material.clearcoat_normal_scale);
-    bind_map(item, program, material.clearcoat_map, false, kUnitClearcoat, "clearcoat_map");
-    bind_map(item, program, material.clearcoat_roughness_map, false, kUnitClearcoatRoughness,
-             "clearcoat_roughness_map");
-    bind_map(item, program, material.clearcoat_normal_map, false, kUnitClearcoatNormal,
-             "clearcoat_normal_map");
+    bind_map(item, program, material.clearcoat_map, TextureUse::kNumbers, kUnitClearcoat,
+             "clearcoat_map");
+    bind_map(item, program, material.clearcoat_roughness_map, TextureUse::kNumbers,
+             kUnitClearcoatRoughness, "clearcoat_roughness_map");
+    bind_map(item, program, material.clearcoat_normal_map, TextureUse::kNumbers,
+             kUnitClearcoatNormal, "clearcoat_normal_map");
   }
   if (material.sheen_color != glm::vec3(0.0F)) {
     program.set("u_sheen_color", material.sheen_color);
     program.set("u_sheen_roughness", material.sheen_roughness);
-    bind_map(item, program, material.sheen_color_map, true, kUnitSheenColor, "sheen_color_map");
-    bind_map(item, program, material.sheen_roughness_map, false, kUnitSheenRoughness,
+    bind_map(item, program, material.sheen_color_map, TextureUse::kColor, kUnitSheenColor,
+             "sheen_color_map");
+    bind_map(item, program, material.sheen_roughness_map, TextureUse::kNumbers, kUnitSheenRoughness,
              "sheen_roughness_map");
   }
 }

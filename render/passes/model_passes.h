@@ -45,8 +45,8 @@ class ModelPasses {
   void set_layers(const DrawItem& item, const Program& program) const;
   void set_lamps(const Program& program) const;
   void set_cut_out(const DrawItem& item, const Program& program) const;
-  void bind_map(const DrawItem& item, const Program& program, const TextureSlot& slot, bool srgb,
-                unsigned unit, const char* name) const;
+  void bind_map(const DrawItem& item, const Program& program, const TextureSlot& slot,
+                TextureUse use, unsigned unit, const char* name) const;
 
   const Gl* gl_;
   ShaderLibrary* shaders_;

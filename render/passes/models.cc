@@ -176,16 +176,25 @@ void ModelSet::add_deformed(DrawItem item, const MeshBuffers& mesh,
   items_.push_back(item);
 }
 
-GLuint ModelSet::texture(const DrawItem& item, const TextureSlot& slot, bool srgb) const {
-  const auto known = item.gpu->textures.find({slot.texture, srgb});
+TextureUse base_color_use(const DrawItem& item) {
+  const int texture = item.material->base_color_map.texture;
+  if (texture < 0) return TextureUse::kColor;
+  const int image = item.model->textures[static_cast<std::size_t>(texture)].image;
+  return better_encoded(item.model->images[static_cast<std::size_t>(image)]) ? TextureUse::kEncoded
+                                                                             : TextureUse::kColor;
+}
+
+GLuint ModelSet::texture(const DrawItem& item, const TextureSlot& slot, TextureUse use) const {
+  const auto known = item.gpu->textures.find({slot.texture, use});
   if (known != item.gpu->textures.end()) return known->second.id();
   const ModelTexture& texture = item.model->textures[static_cast<std::size_t>(slot.texture)];
-  const TextureOptions options{srgb, texture.wrap_s, texture.wrap_t, texture.min_filter,
-                               texture.mag_filter};
-  TextureHandle handle =
-      upload_image(*gl_, item.model->images[static_cast<std::size_t>(texture.image)], options);
+  const TextureOptions options{use == TextureUse::kColor, texture.wrap_s, texture.wrap_t,
+                               texture.min_filter, texture.mag_filter};
+  const ImageU8& image = item.model->images[static_cast<std::size_t>(texture.image)];
+  TextureHandle handle = use == TextureUse::kEncoded ? upload_encoded(*gl_, image, options)
+                                                     : upload_image(*gl_, image, options);
   const GLuint id = handle.id();
-  item.gpu->textures.emplace(std::make_pair(slot.texture, srgb), std::move(handle));
+  item.gpu->textures.emplace(std::make_pair(slot.texture, use), std::move(handle));
   return id;
 }
 

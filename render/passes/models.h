@@ -14,13 +14,20 @@
 
 namespace planecast::render {
 
+/// What a texture's bytes mean.
+enum class TextureUse {
+  kNumbers,  ///< as they are
+  kColor,    ///< sRGB, decoded when sampled
+  kEncoded,  ///< sRGB, decoded by the shader: see better_encoded()
+};
+
 /// A glTF model on the GPU. Textures follow on first use, since how one is decoded depends on its
 /// use.
 struct GpuModel {
   std::weak_ptr<const Model> model;
   std::uint64_t serial = 0;  ///< of the upload: an address may come back with another model
-  std::vector<std::vector<MeshBuffers>> meshes;            ///< by mesh and primitive
-  std::map<std::pair<int, bool>, TextureHandle> textures;  ///< by texture and whether it is sRGB
+  std::vector<std::vector<MeshBuffers>> meshes;  ///< by mesh and primitive
+  std::map<std::pair<int, TextureUse>, TextureHandle> textures;
 };
 
 /// One primitive of one instance, posed, ready for any pass.
@@ -59,7 +66,7 @@ class ModelSet {
   /// The lights of the posed models, at most kMostLamps.
   const std::vector<Lamp>& lamps() const { return lamps_; }
   /// The texture of a slot that has one.
-  GLuint texture(const DrawItem& item, const TextureSlot& slot, bool srgb) const;
+  GLuint texture(const DrawItem& item, const TextureSlot& slot, TextureUse use) const;
   /// Changes when what pose() was last given does.
   std::uint64_t signature() const { return signature_; }
   void clear();
@@ -86,6 +93,9 @@ class ModelSet {
   std::uint64_t uploads_ = 0;
   std::uint64_t signature_ = 0;
 };
+
+/// How the base colour of an item is kept.
+TextureUse base_color_use(const DrawItem& item);
 
 /// Corners of the items' boxes in the world.
 std::vector<glm::vec3> world_box_points(const std::vector<DrawItem>& items);

@@ -23,6 +23,7 @@ enum TextureUnit : unsigned {
   kUnitClearcoatNormal = 16,
   kUnitSheenColor = 17,
   kUnitSheenRoughness = 18,
+  kUnitBaked = 19,
 };
 
 }  // namespace planecast::render
