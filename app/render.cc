@@ -1,9 +1,9 @@
 #include <memory>
 
 #include "app/commands.h"
+#include "app/rendering.h"
 #include "engine/pipeline/reconstruction_io.h"
 #include "engine/user_error.h"
-#include "app/rendering.h"
 
 namespace planecast::app {
 namespace {

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
-#include "engine/pipeline/render_sequence.h"
 #include "app/options.h"
+#include "engine/pipeline/render_sequence.h"
 
 namespace planecast::app {
 

@@ -3,11 +3,11 @@
 #include <memory>
 
 #include "app/commands.h"
+#include "app/rendering.h"
 #include "engine/output/atomic_file.h"
 #include "engine/output/report.h"
 #include "engine/pipeline/reconstruction_io.h"
 #include "engine/user_error.h"
-#include "app/rendering.h"
 
 namespace planecast::app {
 namespace {

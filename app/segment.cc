@@ -3,11 +3,11 @@
 #include <opencv2/core.hpp>
 
 #include "app/commands.h"
+#include "app/options.h"
 #include "engine/output/atomic_file.h"
 #include "engine/output/png.h"
 #include "engine/output/trajectory.h"
 #include "engine/user_error.h"
-#include "app/options.h"
 #include "slam/segmentation/plane_segmenter.h"
 
 namespace planecast::app {

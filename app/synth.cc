@@ -1,9 +1,9 @@
 #include <memory>
 
 #include "app/commands.h"
+#include "app/options.h"
 #include "engine/sequence/synth.h"
 #include "engine/user_error.h"
-#include "app/options.h"
 
 namespace planecast::app {
 namespace {

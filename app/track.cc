@@ -1,9 +1,9 @@
 #include <memory>
 
 #include "app/commands.h"
+#include "app/options.h"
 #include "engine/output/atomic_file.h"
 #include "engine/pipeline/reconstruction_io.h"
-#include "app/options.h"
 
 namespace planecast::app {
 namespace {

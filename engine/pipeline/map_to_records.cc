@@ -55,7 +55,8 @@ Reconstruction map_to_records(const slam::Map& map, const slam::Camera& camera, 
     result.keyframes.push_back(
         {keyframe.frame_index, keyframe.timestamp, keyframe.cam_from_world.inverse()});
   }
-  // Landmarks lie about this far apart where a surface has texture; the extent bridges no wider gaps.
+  // Landmarks lie about this far apart where a surface has texture; the extent bridges no wider
+  // gaps.
   const double spacing = 0.05 * result.median_depth;
   for (const slam::Plane& plane : map.planes) {
     if (!plane.weak) result.planes.push_back(record_of(map, plane, spacing));

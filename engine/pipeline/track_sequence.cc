@@ -302,7 +302,7 @@ Reconstruction TwoPassTracker::records() {
   result.mode = rgbd_ ? "rgbd" : "mono";
   if (joint_.plane_rms_before > 0.0) {
     result.plane_rms = PlaneRms{joint_.plane_rms_before,
-                        joint_.kept ? joint_.plane_rms_after : joint_.plane_rms_before};
+                                joint_.kept ? joint_.plane_rms_after : joint_.plane_rms_before};
   }
   result.frames = std::move(frames_);
   result.frame_times = std::move(times_);

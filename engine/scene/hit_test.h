@@ -21,8 +21,8 @@ struct Hit {
 };
 
 struct HitOptions {
-  /// A ray that meets no polygon meets the one whose edge it passes most closely, up to this share of
-  /// the hit's depth: estimated outlines end at the last landmark, before the surface does.
+  /// A ray that meets no polygon meets the one whose edge it passes most closely, up to this share
+  /// of the hit's depth: estimated outlines end at the last landmark, before the surface does.
   double dilation = 0.25;
 };
 

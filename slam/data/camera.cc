@@ -1,8 +1,8 @@
 #include "slam/data/camera.h"
 
-#include <algorithm>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -10,7 +10,8 @@ namespace planecast::slam {
 namespace {
 
 /// Normalised undistorted -> normalised distorted coordinates, OpenCV's radial-tangential model.
-Eigen::Vector2d distort_radial_tangential(const Eigen::Vector2d& p, const std::array<double, 5>& d) {
+Eigen::Vector2d distort_radial_tangential(const Eigen::Vector2d& p,
+                                          const std::array<double, 5>& d) {
   const double r2 = p.squaredNorm();
   const double radial = 1.0 + r2 * (d[0] + r2 * (d[1] + r2 * d[4]));
   const double xy = p.x() * p.y();
@@ -48,7 +49,8 @@ Eigen::Vector2d undistort_fisheye(const Eigen::Vector2d& p, const std::array<dou
   return p * (std::tan(theta) / target);
 }
 
-/// Newton's method with a numeric 2x2 Jacobian: the fixed-point iteration diverges at strong lenses.
+/// Newton's method with a numeric 2x2 Jacobian: the fixed-point iteration diverges at strong
+/// lenses.
 Eigen::Vector2d undistort_radial_tangential(const Eigen::Vector2d& target,
                                             const std::array<double, 5>& d) {
   Eigen::Vector2d p = target;
@@ -79,8 +81,9 @@ bool Camera::has_distortion() const {
 Eigen::Vector2d Camera::undistort(const Eigen::Vector2d& raw_pixel) const {
   if (!has_distortion()) return raw_pixel;
   const Eigen::Vector2d p = ray(raw_pixel).head<2>();
-  const Eigen::Vector2d u = lens == LensModel::kFisheye ? undistort_fisheye(p, distortion)
-                                                        : undistort_radial_tangential(p, distortion);
+  const Eigen::Vector2d u = lens == LensModel::kFisheye
+                                ? undistort_fisheye(p, distortion)
+                                : undistort_radial_tangential(p, distortion);
   return project(u.homogeneous());
 }
 

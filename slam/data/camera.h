@@ -11,9 +11,9 @@ enum class LensModel {
   kFisheye,  ///< Kannala-Brandt, (k1, k2, k3, k4)
 };
 
-/// Intrinsics of one camera. SLAM works in *undistorted* pixels, those of the ideal pinhole with the
-/// same fx, fy, cx, cy; images and masks are in *raw* pixels, as recorded. Pixel centres are integers.
-/// fy may be negative (ICL-NUIM).
+/// Intrinsics of one camera. SLAM works in *undistorted* pixels, those of the ideal pinhole with
+/// the same fx, fy, cx, cy; images and masks are in *raw* pixels, as recorded. Pixel centres are
+/// integers. fy may be negative (ICL-NUIM).
 struct Camera {
   LensModel lens = LensModel::kPinhole;
   int width = 0;

@@ -15,10 +15,11 @@ struct Observation {
 
 struct Landmark {
   LandmarkId id = kNone;
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();   ///< world
-  Eigen::Vector3d view_from = Eigen::Vector3d::Zero();  ///< unit, from the landmark towards the mean camera
-  Descriptor descriptor = {};                           ///< the observers' medoid
-  double min_distance = 0.0;  ///< range of distances at which the pyramid covers it
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< world
+  Eigen::Vector3d view_from =
+      Eigen::Vector3d::Zero();  ///< unit, from the landmark towards the mean camera
+  Descriptor descriptor = {};   ///< the observers' medoid
+  double min_distance = 0.0;    ///< range of distances at which the pyramid covers it
   double max_distance = 0.0;
   std::vector<Observation> observations;  ///< ascending by keyframe
   KeyframeId first_keyframe = kNone;

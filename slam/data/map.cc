@@ -12,9 +12,8 @@ auto find_observation(std::vector<Observation>& observations, KeyframeId keyfram
 }
 
 bool sees(const std::vector<Observation>& observations, KeyframeId keyframe) {
-  return std::any_of(observations.begin(), observations.end(), [keyframe](const Observation& o) {
-    return o.keyframe == keyframe;
-  });
+  return std::any_of(observations.begin(), observations.end(),
+                     [keyframe](const Observation& o) { return o.keyframe == keyframe; });
 }
 
 }  // namespace

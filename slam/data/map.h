@@ -11,15 +11,16 @@
 
 namespace planecast::slam {
 
-/// Keyframes, landmarks and planes, by value: a copy is an independent snapshot. Invariants, kept by
-/// the functions below: keyframe.landmarks[k] == l exactly where l's observations hold (keyframe, k);
-/// a landmark sees a keyframe at most once; observations ascend by keyframe.
+/// Keyframes, landmarks and planes, by value: a copy is an independent snapshot. Invariants, kept
+/// by the functions below: keyframe.landmarks[k] == l exactly where l's observations hold
+/// (keyframe, k); a landmark sees a keyframe at most once; observations ascend by keyframe.
 class Map {
  public:
   SlotStore<Keyframe> keyframes;
   SlotStore<Landmark> landmarks;
   SlotStore<Plane> planes;
-  /// Pairs of keyframes that a closed loop has tied together: edges of the essential graph. Both alive.
+  /// Pairs of keyframes that a closed loop has tied together: edges of the essential graph. Both
+  /// alive.
   std::vector<std::pair<KeyframeId, KeyframeId>> loop_edges;
 
   void add_observation(LandmarkId landmark, KeyframeId keyframe, int keypoint);
@@ -29,8 +30,8 @@ class Map {
   /// Removes the keyframe and its observations and hangs its children below its parent; its pose
   /// relative to the parent is remembered for keyframe_pose().
   void erase_keyframe(KeyframeId keyframe);
-  /// Moves the observations of `from` to `to` (where `to` is not seen yet) and erases `from`, which is
-  /// found as `to` from then on by resolve().
+  /// Moves the observations of `from` to `to` (where `to` is not seen yet) and erases `from`, which
+  /// is found as `to` from then on by resolve().
   void replace_landmark(LandmarkId from, LandmarkId to);
   /// The living landmark that `id` has become, or kNone.
   LandmarkId resolve(LandmarkId id) const;
@@ -62,8 +63,8 @@ class Map {
   struct ErasedKeyframe {
     KeyframeId id;
     KeyframeId parent;
-    Pose cam_from_parent;     ///< in the parent's units
-    double unit_per_parent;   ///< its unit over the parent's
+    Pose cam_from_parent;    ///< in the parent's units
+    double unit_per_parent;  ///< its unit over the parent's
   };
   const ErasedKeyframe* find_erased(KeyframeId keyframe) const;
 

@@ -7,16 +7,18 @@
 namespace planecast::slam {
 namespace {
 
-/// Keypoints of b without a landmark, by their place in stripes across the image, so that only those
-/// near an epipolar line are looked at.
+/// Keypoints of b without a landmark, by their place in stripes across the image, so that only
+/// those near an epipolar line are looked at.
 class StripeIndex {
  public:
   StripeIndex(const Keyframe& keyframe, bool by_row, int extent_px)
       : by_row_(by_row), stripes_(static_cast<std::size_t>(extent_px / kStripePx + 1)) {
     for (int k = 0; k < keyframe.features->size(); ++k) {
       if (keyframe.landmarks[static_cast<std::size_t>(k)] != kNone) continue;
-      const Eigen::Vector2f& pixel = keyframe.features->keypoints[static_cast<std::size_t>(k)].pixel;
-      stripes_[clamp(by_row ? pixel.y() : pixel.x())].push_back({k, by_row ? pixel.x() : pixel.y()});
+      const Eigen::Vector2f& pixel =
+          keyframe.features->keypoints[static_cast<std::size_t>(k)].pixel;
+      stripes_[clamp(by_row ? pixel.y() : pixel.x())].push_back(
+          {k, by_row ? pixel.x() : pixel.y()});
     }
     for (auto& stripe : stripes_) {
       std::sort(stripe.begin(), stripe.end(), [](const Entry& a, const Entry& b) {
@@ -79,8 +81,7 @@ std::vector<std::pair<int, int>> match_along_epipolar(const Keyframe& a, const K
     const auto ia = static_cast<std::size_t>(i);
     if (a.landmarks[ia] != kNone) continue;
     const Keypoint& from = a.features->keypoints[ia];
-    const Eigen::Vector3d line =
-        b_F_a * Eigen::Vector3d(from.pixel.x(), from.pixel.y(), 1.0);
+    const Eigen::Vector3d line = b_F_a * Eigen::Vector3d(from.pixel.x(), from.pixel.y(), 1.0);
     const double norm2 = line.head<2>().squaredNorm();
     if (norm2 < 1e-20) continue;
     int best = -1;
@@ -96,7 +97,8 @@ std::vector<std::pair<int, int>> match_along_epipolar(const Keyframe& a, const K
       if (epipole_in_front && (pixel - epipole).squaredNorm() < 100.0 * levels.scale(to.octave)) {
         return;
       }
-      const int distance = hamming_distance(a.features->descriptors[ia], b.features->descriptors[jb]);
+      const int distance =
+          hamming_distance(a.features->descriptors[ia], b.features->descriptors[jb]);
       if (distance < best_distance || (distance == best_distance && j < best)) {
         best = j;
         best_distance = distance;

@@ -38,7 +38,8 @@ void keep_dominant_rotation(std::vector<std::pair<int, int>>& pairs, const Angle
   std::array<int, kRotationBins> count{};
   for (const auto& pair : pairs) ++count[static_cast<std::size_t>(bin_of(pair))];
   const std::array<bool, kRotationBins> keep = dominant_bins(count);
-  std::erase_if(pairs, [&](const auto& pair) { return !keep[static_cast<std::size_t>(bin_of(pair))]; });
+  std::erase_if(pairs,
+                [&](const auto& pair) { return !keep[static_cast<std::size_t>(bin_of(pair))]; });
 }
 
 /// Best and second best of a search.
@@ -67,7 +68,8 @@ struct Best {
 class Claims {
  public:
   explicit Claims(int targets)
-      : source_(static_cast<std::size_t>(targets), -1), distance_(static_cast<std::size_t>(targets), 257) {}
+      : source_(static_cast<std::size_t>(targets), -1),
+        distance_(static_cast<std::size_t>(targets), 257) {}
 
   void claim(int source, int target, int distance) {
     const auto t = static_cast<std::size_t>(target);
@@ -116,8 +118,7 @@ std::vector<std::pair<int, int>> match_expectations(const Features& features,
                  features.keypoints[c].octave);
     }
     if (best.index < 0 || best.distance > options.max_distance) continue;
-    if (best.octave == best.second_octave &&
-        best.distance > options.ratio * best.second_distance) {
+    if (best.octave == best.second_octave && best.distance > options.ratio * best.second_distance) {
       continue;
     }
     claims.claim(static_cast<int>(e), best.index, best.distance);
@@ -140,8 +141,8 @@ int predict_octave(const Landmark& landmark, double distance, const ScaleLevels&
 
 bool expect_landmark(const Landmark& landmark, const Camera& camera, const Pose& cam_from_world,
                      const ScaleLevels& levels, Expectation& expectation) {
-  constexpr double kMinViewCosine = 0.5;   // 60 degrees [K]
-  constexpr double kRangeSlack = 1.2;      // the range of distances, widened [K]
+  constexpr double kMinViewCosine = 0.5;  // 60 degrees [K]
+  constexpr double kRangeSlack = 1.2;     // the range of distances, widened [K]
   const Eigen::Vector3d point_cam = cam_from_world * landmark.position;
   if (point_cam.z() <= 0.0) return false;
   const Eigen::Vector2d pixel = camera.project(point_cam);
@@ -210,8 +211,8 @@ std::vector<std::pair<int, int>> match_brute_force(const Features& from,
     if (!use_from.empty() && use_from[f] == 0) continue;
     Best best;
     for (int j = 0; j < to.size(); ++j) {
-      best.offer(j, hamming_distance(from.descriptors[f], to.descriptors[static_cast<std::size_t>(j)]),
-                 0);
+      best.offer(
+          j, hamming_distance(from.descriptors[f], to.descriptors[static_cast<std::size_t>(j)]), 0);
     }
     if (best.distance <= max_distance && best.distance < ratio * best.second_distance) {
       claims.claim(i, best.index, best.distance);

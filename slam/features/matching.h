@@ -33,7 +33,8 @@ struct ExpectationMatchOptions {
 
 /// Keypoint -> landmark for a whole image. `taken[k]` != kNone marks keypoints that are not to be
 /// matched again; pass an empty vector for none. Each keypoint and each landmark is used once (the
-/// nearer descriptor wins). Returns pairs (keypoint, index into expectations), ascending by keypoint.
+/// nearer descriptor wins). Returns pairs (keypoint, index into expectations), ascending by
+/// keypoint.
 std::vector<std::pair<int, int>> match_expectations(const Features& features,
                                                     const std::vector<Expectation>& expectations,
                                                     const std::vector<LandmarkId>& taken,
@@ -42,19 +43,20 @@ std::vector<std::pair<int, int>> match_expectations(const Features& features,
 /// Octave at which a landmark at `distance` is expected, given its distance range.
 int predict_octave(const Landmark& landmark, double distance, const ScaleLevels& levels);
 
-/// Where and how `landmark` should appear in a camera: nothing if it is outside the image, out of its
-/// distance range or seen from more than 60 degrees off its mean viewing direction.
+/// Where and how `landmark` should appear in a camera: nothing if it is outside the image, out of
+/// its distance range or seen from more than 60 degrees off its mean viewing direction.
 bool expect_landmark(const Landmark& landmark, const Camera& camera, const Pose& cam_from_world,
                      const ScaleLevels& levels, Expectation& expectation);
 
 /// Matches for the monocular initialisation: keypoints of octave 0 only, near where they were seen
-/// last. `guess` (size of ref) is updated to the matched pixels. Pairs (ref, cur), ascending by ref.
+/// last. `guess` (size of ref) is updated to the matched pixels. Pairs (ref, cur), ascending by
+/// ref.
 std::vector<std::pair<int, int>> match_for_initialisation(const Features& ref, const Features& cur,
                                                           std::vector<Eigen::Vector2d>& guess,
                                                           double window_px);
 
-/// Brute-force matches of the keypoints of `from` that `use_from` marks with those of `to`; ratio and
-/// rotation checked, one to one. Pairs (from, to), ascending by from.
+/// Brute-force matches of the keypoints of `from` that `use_from` marks with those of `to`; ratio
+/// and rotation checked, one to one. Pairs (from, to), ascending by from.
 std::vector<std::pair<int, int>> match_brute_force(const Features& from,
                                                    const std::vector<char>& use_from,
                                                    const Features& to, int max_distance,

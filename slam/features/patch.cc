@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "slam/features/sample_square.h"
+
 namespace planecast::slam {
 namespace {
 
@@ -52,37 +54,6 @@ bool sample_with_rim(const cv::Mat& image, const Eigen::Vector2f& centre,
     }
   }
   return true;
-}
-
-/// The patch at an unrotated, unscaled place. The caller has checked the bounds.
-void sample_upright(const cv::Mat& image, const Eigen::Vector2f& centre, PatchValues& values) {
-  const float x = centre.x() + kFirst;
-  const float y = centre.y() + kFirst;
-  const int x0 = static_cast<int>(x);
-  const int y0 = static_cast<int>(y);
-  const float fx = x - static_cast<float>(x0);
-  const float fy = y - static_cast<float>(y0);
-  const float w00 = (1.0F - fx) * (1.0F - fy);
-  const float w01 = fx * (1.0F - fy);
-  const float w10 = (1.0F - fx) * fy;
-  const float w11 = fx * fy;
-  for (int v = 0; v < kPatchSide; ++v) {
-    const uchar* upper = image.ptr<uchar>(y0 + v) + x0;
-    const uchar* lower = upper + image.step[0];
-    float* out = values.data() + v * kPatchSide;
-    for (int u = 0; u < kPatchSide; ++u) {
-      out[u] = w00 * static_cast<float>(upper[u]) + w01 * static_cast<float>(upper[u + 1]) +
-               w10 * static_cast<float>(lower[u]) + w11 * static_cast<float>(lower[u + 1]);
-    }
-  }
-}
-
-/// Whether the whole patch about `centre` lies in the image.
-bool holds_patch(const cv::Mat& image, const Eigen::Vector2f& centre) {
-  const float reach = -kFirst;
-  return centre.x() >= reach && centre.y() >= reach &&
-         centre.x() < static_cast<float>(image.cols - 1) - reach &&
-         centre.y() < static_cast<float>(image.rows - 1) - reach;
 }
 
 struct Comparison {
@@ -161,8 +132,7 @@ std::optional<PatchAlignment> align_patch(const PatchTemplate& patch, const cv::
   alignment.pixel = start;
   PatchValues current;
   for (int i = 0; i < options.iterations; ++i) {
-    if (!holds_patch(image, alignment.pixel)) return std::nullopt;
-    sample_upright(image, alignment.pixel, current);
+    if (!sample_square<kPatchSide>(image, alignment.pixel, current)) return std::nullopt;
     const Comparison comparison = compare(patch, current);
     alignment.correlation = comparison.correlation;
     const Eigen::Vector2f step = patch.inverse_hessian * comparison.gradient;

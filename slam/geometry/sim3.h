@@ -20,8 +20,7 @@ struct Similarity {
     return {scale * first.scale, rotation * first.rotation, *this * first.translation};
   }
   Similarity inverse() const {
-    return {1.0 / scale, rotation.transpose(),
-            -(rotation.transpose() * translation) / scale};
+    return {1.0 / scale, rotation.transpose(), -(rotation.transpose() * translation) / scale};
   }
 };
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "slam/features/pyramid.h"
+#include "slam/features/sample_square.h"
 #include "slam/geometry/lens.h"
 #include "slam/geometry/pose_system.h"
 
@@ -34,36 +35,6 @@ struct Point {
 
 int shorter_side(const cv::Mat& image) { return std::min(image.cols, image.rows); }
 
-/// Samples a side x side square; false beyond the image.
-template <int Side>
-bool sample(const cv::Mat& image, const Eigen::Vector2f& centre,
-            Eigen::Array<float, Side * Side, 1>& values) {
-  const float x = centre.x() - 0.5F * (Side - 1);
-  const float y = centre.y() - 0.5F * (Side - 1);
-  if (!(x >= 0.0F && y >= 0.0F && x < static_cast<float>(image.cols - Side) &&
-        y < static_cast<float>(image.rows - Side))) {
-    return false;
-  }
-  const int x0 = static_cast<int>(x);
-  const int y0 = static_cast<int>(y);
-  const float fx = x - static_cast<float>(x0);
-  const float fy = y - static_cast<float>(y0);
-  const float w00 = (1.0F - fx) * (1.0F - fy);
-  const float w01 = fx * (1.0F - fy);
-  const float w10 = (1.0F - fx) * fy;
-  const float w11 = fx * fy;
-  for (int v = 0; v < Side; ++v) {
-    const uchar* upper = image.ptr<uchar>(y0 + v) + x0;
-    const uchar* lower = upper + image.step[0];
-    for (int u = 0; u < Side; ++u) {
-      values[v * Side + u] =
-          w00 * static_cast<float>(upper[u]) + w01 * static_cast<float>(upper[u + 1]) +
-          w10 * static_cast<float>(lower[u]) + w11 * static_cast<float>(lower[u + 1]);
-    }
-  }
-  return true;
-}
-
 class Level {
  public:
   Level(const Camera& camera, const cv::Mat& before, const cv::Mat& image, int level)
@@ -74,7 +45,7 @@ class Level {
     point.before = point_before;
     constexpr int kRim = kSide + 2;
     Eigen::Array<float, kRim * kRim, 1> rim;
-    if (!sample<kRim>(before_, pixel_of(point_before), rim)) return;
+    if (!sample_square<kRim>(before_, pixel_of(point_before), rim)) return;
     for (int v = 0; v < kSide; ++v) {
       for (int u = 0; u < kSide; ++u) {
         const int r = (v + 1) * kRim + u + 1;
@@ -135,7 +106,7 @@ class Level {
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const Eigen::Vector3d point = cam_from_before * points_[i].before;
       if (!(point.z() > 0.0)) continue;
-      if (!sample<kSide>(image_, pixel_of(point), current_[i])) continue;
+      if (!sample_square<kSide>(image_, pixel_of(point), current_[i])) continue;
       in_view_[i] = 1;
       ++count;
       sum += static_cast<double>(current_[i].sum());
@@ -195,8 +166,8 @@ std::optional<Pose> align_frame(const Camera& camera, const ImagePyramid& before
                                 const AlignFrameOptions& options) {
   const auto coarsest = static_cast<int>(std::min(before.levels.size(), image.levels.size())) - 1;
   int finest = 0;
-  while (finest < coarsest && shorter_side(image.levels[static_cast<std::size_t>(finest)]) >
-                                  options.finest_side_px) {
+  while (finest < coarsest &&
+         shorter_side(image.levels[static_cast<std::size_t>(finest)]) > options.finest_side_px) {
     ++finest;
   }
   Pose cam_from_before = guess_cam_from_before;

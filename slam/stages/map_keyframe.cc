@@ -37,8 +37,8 @@ void follow(const Map& map, PoseEstimate& estimate) {
   std::erase_if(estimate.patches, [](const PatchMatch& patch) { return patch.landmark == kNone; });
 }
 
-/// Nobody looks at a keyframe's depth and masks again once its planes are mapped, and they are most of
-/// its memory.
+/// Nobody looks at a keyframe's depth and masks again once its planes are mapped, and they are most
+/// of its memory.
 void release_images(Keyframe& keyframe) {
   keyframe.depth.release();
   keyframe.label_image.release();

@@ -163,8 +163,8 @@ void fuse_landmarks_into(Map& map, const std::vector<LandmarkId>& candidates, Ke
     const bool seen = std::any_of(landmark->observations.begin(), landmark->observations.end(),
                                   [id](const Observation& o) { return o.keyframe == id; });
     Expectation expectation;
-    if (seen || !expect_landmark(*landmark, camera, keyframe.cam_from_world, options.levels,
-                                 expectation)) {
+    if (seen ||
+        !expect_landmark(*landmark, camera, keyframe.cam_from_world, options.levels, expectation)) {
       continue;
     }
     expectation.radius_px = 3.0 * options.levels.scale(expectation.max_octave);

@@ -30,8 +30,8 @@ render::Camera camera_over_the_plane() {
   camera.cy = 119.5F;
   // The world is y-up; the camera convention is y-down, z-forward.
   const glm::mat4 flip = glm::scale(glm::mat4(1.0F), glm::vec3(1, -1, -1));
-  camera.camera_from_world =
-      flip * glm::lookAt(glm::vec3(0.35F, 0.45F, 0.65F), glm::vec3(0, 0.13F, 0), glm::vec3(0, 1, 0));
+  camera.camera_from_world = flip * glm::lookAt(glm::vec3(0.35F, 0.45F, 0.65F),
+                                                glm::vec3(0, 0.13F, 0), glm::vec3(0, 1, 0));
   return camera;
 }
 
@@ -62,8 +62,9 @@ cv::Mat draw_robot() {
   for (int y = 0; y < frame.rows; ++y) {
     for (int x = 0; x < frame.cols; ++x) {
       const std::uint8_t* rgba =
-          &layer.rgba.pixels[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.cols) +
-                                  static_cast<std::size_t>(x))];
+          &layer.rgba
+               .pixels[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.cols) +
+                            static_cast<std::size_t>(x))];
       const int behind = 160 * (255 - rgba[3]) / 255;
       for (int c = 0; c < 3; ++c) {
         frame.at<cv::Vec3b>(y, x)[c] = cv::saturate_cast<std::uint8_t>(rgba[2 - c] + behind);

@@ -141,10 +141,10 @@ TEST(CameraPath, TheRingComesBackAndSeesNoPlaceTwiceBefore) {
   // Two metres at the end repeat the beginning: the hand sways by some centimetres.
   const double repeated_s = 2.0 / 0.55;
   EXPECT_LT((path.world_from_cam(end_s - repeated_s).translation() - first).norm(), 0.15);
-  EXPECT_LT((path.world_from_cam(end_s).translation() -
-             path.world_from_cam(repeated_s).translation())
-                .norm(),
-            0.15);
+  EXPECT_LT(
+      (path.world_from_cam(end_s).translation() - path.world_from_cam(repeated_s).translation())
+          .norm(),
+      0.15);
   double farthest = 0.0;
   // From two metres after the start to two metres before it is reached again.
   for (double t = repeated_s; t < end_s - 2.0 * repeated_s; t += 0.1) {

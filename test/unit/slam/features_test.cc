@@ -20,7 +20,8 @@ Camera test_camera() {
   return camera;
 }
 
-/// Seeded rectangles of many sizes and greys: corners everywhere, each with a surrounding of its own.
+/// Seeded rectangles of many sizes and greys: corners everywhere, each with a surrounding of its
+/// own.
 cv::Mat textured_image(int seed) {
   cv::Mat image(480, 640, CV_8U, cv::Scalar(128));
   cv::RNG random(static_cast<std::uint64_t>(seed));
@@ -93,8 +94,9 @@ TEST(QuadTree, KeepsTheStrongestOfACrowd) {
   corners.emplace_back(cv::Point2f(90.0F, 90.0F), 7.0F, -1.0F, 1.0F);
   const auto kept = spread_corners(corners, 100, 100, 2);
   ASSERT_EQ(kept.size(), 2U);
-  const auto strongest = std::max_element(
-      kept.begin(), kept.end(), [](const auto& a, const auto& b) { return a.response < b.response; });
+  const auto strongest =
+      std::max_element(kept.begin(), kept.end(),
+                       [](const auto& a, const auto& b) { return a.response < b.response; });
   EXPECT_EQ(strongest->response, 49.0F);
 }
 

@@ -136,8 +136,8 @@ TEST(CornerTracks, FollowWithoutDrift) {
     const Eigen::Vector3d point = kDepth * camera.ray(keypoint.pixel.cast<double>());
     sum += (project_raw(camera, pose * point) - track.raw.cast<double>()).norm();
   }
-  // The roll of 4 degrees, which is not in the template, moves the corners of the patch by 0.4 px; the
-  // bias of its place is less than half of that.
+  // The roll of 4 degrees, which is not in the template, moves the corners of the patch by 0.4 px;
+  // the bias of its place is less than half of that.
   EXPECT_LT(sum / static_cast<double>(tracks.tracks().size()), 0.2);
 }
 
