@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # Runs the benchmark configurations and writes docs/results.md with its plots: what stands there is
 # what this wrote. Usage: scripts/bench.sh [CONFIG...] (names in assets/benchmark; default: builtin
-# real ablation). Results stay in out/bench; BENCH_RESUME=1 keeps the runs that are complete there.
+# real ablation scaling). Results stay in out/bench; BENCH_RESUME=1 keeps the runs that are complete there.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/setup.sh
 scripts/build.sh release planecast
 planecast=build/release/planecast
 configs=("$@")
-[ ${#configs[@]} -gt 0 ] || configs=(builtin real ablation)
+[ ${#configs[@]} -gt 0 ] || configs=(builtin real ablation scaling)
 resume=()
 [ -z "${BENCH_RESUME:-}" ] || resume=(--resume)
 out=out/bench

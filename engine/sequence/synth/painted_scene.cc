@@ -17,6 +17,7 @@ constexpr int kGutter =
     6;  // texels repeated around a patch, so that mip levels take nothing else in
 constexpr int kMaxSide = 2048;
 constexpr int kAtlasWidth = 2048;
+constexpr int kAtlasHeight = 16384;    // the largest texture; what is beyond goes into another
 constexpr int kAtlasPatchSide = 1000;  // larger ones get a texture of their own
 
 struct Painted {
@@ -129,47 +130,60 @@ bool goes_into_atlas(const Patch& patch, const Painted& painted) {
          painted.image->height <= kAtlasPatchSide;
 }
 
-/// Small unlabelled patches share one texture, packed in shelves, and one mesh.
-void add_atlas(const RoomModel& model, const std::vector<Painted>& painted,
-               std::vector<render::SurfaceMesh>& surfaces) {
-  std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < painted.size(); ++i) {
-    if (goes_into_atlas(model.patches[i], painted[i])) order.push_back(i);
-  }
-  if (order.empty()) return;
-  std::stable_sort(order.begin(), order.end(), [&painted](std::size_t a, std::size_t b) {
-    return painted[a].image->height > painted[b].image->height;
-  });
-  std::vector<std::pair<int, int>> corner(painted.size());
+/// Packs the patches of `order` from `begin` on in shelves of one texture and makes one mesh of
+/// them; returns the first that found no room.
+std::size_t add_atlas_page(const RoomModel& model, const std::vector<Painted>& painted,
+                           const std::vector<std::size_t>& order, std::size_t begin,
+                           std::vector<render::SurfaceMesh>& surfaces) {
+  std::vector<std::pair<int, int>> corner;
   int x = 0;
   int y = 0;
   int shelf = 0;
-  for (const std::size_t i : order) {
-    const render::ImageU8& image = *painted[i].image;
+  std::size_t end = begin;
+  for (; end < order.size(); ++end) {
+    const render::ImageU8& image = *painted[order[end]].image;
     if (x + image.width > kAtlasWidth) {
       x = 0;
       y += shelf;
       shelf = 0;
     }
-    corner[i] = {x, y};
+    if (y + image.height > kAtlasHeight) break;
+    corner.emplace_back(x, y);
     x += image.width;
     shelf = std::max(shelf, image.height);
   }
   auto atlas = std::make_shared<render::ImageU8>(kAtlasWidth, y + shelf, 3);
   render::SurfaceMesh mesh;
-  for (const std::size_t i : order) {
-    const render::ImageU8& image = *painted[i].image;
-    const auto [left, top] = corner[i];
+  for (std::size_t o = begin; o < end; ++o) {
+    const Painted& patch = painted[order[o]];
+    const render::ImageU8& image = *patch.image;
+    const auto [left, top] = corner[o - begin];
     for (int row = 0; row < image.height; ++row) {
       const auto from = image.pixels.begin() + static_cast<std::ptrdiff_t>(row) * image.width * 3;
       std::copy(from, from + image.width * 3,
                 atlas->pixels.begin() +
                     (static_cast<std::ptrdiff_t>(top + row) * kAtlasWidth + left) * 3);
     }
-    append_patch(model.patches[i], painted[i], left, top, atlas->width, atlas->height, mesh);
+    append_patch(model.patches[order[o]], patch, left, top, atlas->width, atlas->height, mesh);
   }
   mesh.base_color = atlas;
   surfaces.push_back(std::move(mesh));
+  return end;
+}
+
+/// Small unlabelled patches share textures and meshes.
+void add_atlases(const RoomModel& model, const std::vector<Painted>& painted,
+                 std::vector<render::SurfaceMesh>& surfaces) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < painted.size(); ++i) {
+    if (goes_into_atlas(model.patches[i], painted[i])) order.push_back(i);
+  }
+  std::stable_sort(order.begin(), order.end(), [&painted](std::size_t a, std::size_t b) {
+    return painted[a].image->height > painted[b].image->height;
+  });
+  for (std::size_t next = 0; next < order.size();) {
+    next = add_atlas_page(model, painted, order, next, surfaces);
+  }
 }
 
 }  // namespace
@@ -177,7 +191,7 @@ void add_atlas(const RoomModel& model, const std::vector<Painted>& painted,
 render::OpaqueScene paint_scene(const RoomModel& model, float detail) {
   const std::vector<Painted> painted = paint_patches(model, detail);
   render::OpaqueScene scene;
-  add_atlas(model, painted, scene.surfaces);
+  add_atlases(model, painted, scene.surfaces);
   // What was added last stands before what was added first, the walls: drawn in this order, most of
   // what is hidden is never shaded.
   for (std::size_t i = painted.size(); i-- > 0;) {
