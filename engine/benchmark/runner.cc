@@ -11,6 +11,7 @@
 #include "engine/output/atomic_file.h"
 #include "engine/sequence/frame_options.h"
 #include "engine/user_error.h"
+#include "slam/data/byte_stream.h"
 
 namespace planecast::engine {
 
@@ -72,11 +73,16 @@ std::string describe(const BenchmarkRow& row) {
   return text;
 }
 
+/// Tells this build from every other: figures of two are not mixed.
+std::string program_key() {
+  return fmt::format("{:016x}", slam::checksum_of(read_file("/proc/self/exe")));
+}
+
 }  // namespace
 
 BenchmarkRunner::BenchmarkRunner(const BenchmarkConfig& config, BenchmarkOptions options,
                                  Report report)
-    : config_(config), options_(std::move(options)), report_(std::move(report)) {
+    : config_(config), options_(std::move(options)), report_(std::move(report)), program_(program_key()) {
   if (options_.cache.empty()) options_.cache = options_.output / "sequences";
   for (const std::string& name : options_.only) {
     const bool known = std::any_of(config_.sequences.begin(), config_.sequences.end(),
@@ -198,6 +204,7 @@ BenchmarkRow BenchmarkRunner::execute(const BenchmarkRun& run) {
 
 void BenchmarkRunner::write_row(const BenchmarkRow& row) const {
   nlohmann::ordered_json json;
+  json["program"] = program_;
   json["arguments"] = row.run.arguments;
   json["status"] = row.status;
   json["metrics"] = row.metrics;
@@ -209,7 +216,8 @@ std::optional<BenchmarkRow> BenchmarkRunner::read_row(const BenchmarkRun& run) c
   const fs::path file = run.folder / kRunFile;
   if (!fs::exists(file, ignored)) return std::nullopt;
   const nlohmann::json json = nlohmann::json::parse(read_file(file), nullptr, false);
-  if (!json.is_object() || json.value("arguments", nlohmann::json()) != run.arguments) {
+  if (!json.is_object() || json.value("program", "") != program_ ||
+      json.value("arguments", nlohmann::json()) != run.arguments) {
     return std::nullopt;
   }
   BenchmarkRow row{run, json.value("status", ""), {}};

@@ -73,6 +73,7 @@ class BenchmarkRunner {
   const BenchmarkConfig& config_;
   BenchmarkOptions options_;
   Report report_;
+  std::string program_;  ///< in the file of each run: a resumed benchmark mixes no builds
   std::map<std::string, std::unique_ptr<SequenceTruth>> truths_;
 };
 
