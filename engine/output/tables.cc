@@ -18,7 +18,6 @@ namespace {
 
 constexpr std::string_view kFramesHeader = "index,timestamp,state,reason,inliers";
 constexpr const char* kTracking = "Tracking";
-constexpr const char* kExtraction = "Feature Extraction";
 constexpr const char* kSegmentation = "Instance Planar Segmentation";
 constexpr std::array<const char*, 11> kPaperRows = {kTracking,
                                                     "Local Mapping",
@@ -89,20 +88,14 @@ std::vector<double> samples_of(const Reconstruction& reconstruction, const std::
   return samples;
 }
 
-/// The tracking thread's work on each frame: finding features and the pose.
 std::vector<double> tracking_samples(const Reconstruction& reconstruction) {
-  const bool named = !samples_of(reconstruction, kTracking).empty();
-  std::vector<double> samples;
+  std::vector<double> samples = samples_of(reconstruction, kTracking);
+  if (!samples.empty()) return samples;
   for (const StageTimes& times : reconstruction.frame_times) {
+    if (times.empty()) continue;
     double sum = 0.0;
-    bool tracked = !named && !times.empty();
-    for (const auto& [stage, ms] : times) {
-      const bool counts =
-          named ? stage == kTracking || stage == kExtraction : stage != kSegmentation;
-      if (counts) sum += ms;
-      if (stage == kTracking) tracked = true;
-    }
-    if (tracked) samples.push_back(sum);
+    for (const auto& [stage, ms] : times) sum += stage == kSegmentation ? 0.0 : ms;
+    samples.push_back(sum);
   }
   return samples;
 }

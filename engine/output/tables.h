@@ -30,8 +30,7 @@ std::vector<std::string> paper_timing_names();
 
 /// The rows of the paper's Table 2 in its order, then every other stage. A row's samples are the
 /// keyframes' (mapping_times) or, where there are none, the frames' (frame_times) under its name;
-/// "Tracking" is what the tracking thread does with a frame: "Feature Extraction" and "Tracking",
-/// or, without samples of that name, the sum of its stages but for the segmentation.
+/// "Tracking" without samples of its own is the sum of a frame's stages but for the segmentation.
 std::vector<TimingRow> timing_rows(const Reconstruction& reconstruction);
 
 /// timings.json: `{"unit": "ms", "rows": [{"name", "count", "mean", "median", "p95"}]}`.

@@ -1,7 +1,6 @@
 #include "engine/pipeline/track_sequence.h"
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <future>
@@ -86,7 +85,6 @@ class FramesAhead {
   struct Prepared {
     std::optional<slam::ImageFeatures> image;  ///< nothing: unreadable
     std::string error;
-    double milliseconds = 0.0;  ///< without reading
   };
 
   void request(int index, bool initialised) {
@@ -99,12 +97,7 @@ class FramesAhead {
   Prepared prepare(int index, bool initialised) const {
     Prepared prepared;
     try {
-      const slam::FrameInput frame = sequence_.read(index);
-      const auto start = std::chrono::steady_clock::now();
-      prepared.image = system_.prepare(frame, initialised);
-      const std::chrono::duration<double, std::milli> taken =
-          std::chrono::steady_clock::now() - start;
-      prepared.milliseconds = taken.count();
+      prepared.image = system_.prepare(sequence_.read(index), initialised);
     } catch (const UserError& error) {
       prepared.error = error.what();
     }
@@ -215,8 +208,6 @@ void TwoPassTracker::first_pass() {
     record.timestamp =
         prepared.image ? prepared.image->timestamp : sequence_.timestamp(record.index);
     if (prepared.image) {
-      times_[static_cast<std::size_t>(position)].emplace_back("Feature Extraction",
-                                                              prepared.milliseconds);
       record_first(position, system_.track(*prepared.image));
     } else {
       if (!options_.skip_unreadable) throw UserError(prepared.error);

@@ -25,7 +25,7 @@ struct ImageFeatures {
   cv::Mat grey_or_bgr;
   cv::Mat depth;  ///< RGB-D only
   cv::Mat labels;
-  double prepare_ms = 0.0;  ///< for the record only
+  double prepare_ms = 0.0;  ///< counts as tracking; for the record only
 };
 
 /// Depth at a raw pixel; 0 where there is none, where it is beyond `max_depth_m` and where the 3x3
