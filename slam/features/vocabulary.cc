@@ -1,31 +1,22 @@
 #include "slam/features/vocabulary.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <istream>
+#include <iterator>
 #include <ostream>
 #include <string>
+#include <string_view>
+#include <utility>
+
+#include "slam/data/byte_stream.h"
 
 namespace planecast::slam {
 namespace {
 
-static_assert(std::endian::native == std::endian::little,
-              "numbers are dumped as they lie in memory");
-
 constexpr char kMagic[8] = {'P', 'L', 'N', 'C', 'V', 'O', 'C', 1};
-constexpr std::uint32_t kMostNodes = 1U << 24;
-
-template <typename T>
-void put(std::ostream& out, const T& value) {
-  out.write(reinterpret_cast<const char*>(&value), sizeof(T));
-}
-
-template <typename T>
-bool take(std::istream& in, T& value) {
-  return static_cast<bool>(in.read(reinterpret_cast<char*>(&value), sizeof(T)));
-}
+constexpr std::size_t kNodeBytes =
+    sizeof(Descriptor) + 2 * sizeof(std::int32_t) + sizeof(float);
 
 /// Every child lies behind its parent and within the tree, so that any descent ends.
 bool is_sound(const std::vector<Vocabulary::Node>& nodes) {
@@ -86,31 +77,30 @@ int Vocabulary::words() const {
 }
 
 void Vocabulary::write(std::ostream& out) const {
-  out.write(kMagic, sizeof(kMagic));
-  put(out, static_cast<std::uint32_t>(nodes_.size()));
+  ByteWriter writer;
+  writer.put(static_cast<std::uint32_t>(nodes_.size()));
   for (const Node& node : nodes_) {
-    put(out, node.centre);
-    put(out, node.first_child);
-    put(out, node.children);
-    put(out, node.idf);
+    for (const std::uint64_t bits : node.centre) writer.put(bits);
+    writer.put(node.first_child);
+    writer.put(node.children);
+    writer.put(node.idf);
   }
+  out.write(kMagic, sizeof(kMagic));
+  out << writer.bytes();
 }
 
 std::optional<Vocabulary> Vocabulary::read(std::istream& in) {
-  char magic[sizeof(kMagic)];
-  std::uint32_t count = 0;
-  if (!in.read(magic, sizeof(magic)) || std::memcmp(magic, kMagic, sizeof(magic)) != 0 ||
-      !take(in, count) || count > kMostNodes) {
-    return std::nullopt;
-  }
-  std::vector<Node> nodes;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    Node node;
-    if (!take(in, node.centre) || !take(in, node.first_child) || !take(in, node.children) ||
-        !take(in, node.idf)) {
-      return std::nullopt;
-    }
-    nodes.push_back(node);
+  const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  ByteReader reader(bytes);
+  if (reader.take(sizeof(kMagic)) != std::string_view(kMagic, sizeof(kMagic))) return std::nullopt;
+  const auto count = reader.number<std::uint32_t>();
+  if (!reader.ok() || count > reader.rest().size() / kNodeBytes) return std::nullopt;
+  std::vector<Node> nodes(count);
+  for (Node& node : nodes) {
+    for (std::uint64_t& bits : node.centre) bits = reader.number<std::uint64_t>();
+    node.first_child = reader.number<std::int32_t>();
+    node.children = reader.number<std::int32_t>();
+    node.idf = reader.number<float>();
   }
   if (!is_sound(nodes)) return std::nullopt;
   return Vocabulary(std::move(nodes));
