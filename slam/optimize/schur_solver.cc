@@ -220,13 +220,11 @@ class Window {
       // A pose that nothing determines stays where it is.
       hessian_.diagonal().array() += 1e-9;
       reduced_ += hessian_;
-      const Eigen::VectorXd solution =
-          -reduced_.selfadjointView<Eigen::Upper>().ldlt().solve(gradient_);
-      if (!solution.allFinite()) return false;
-      solution_ = solution;
+      solution_ = -reduced_.selfadjointView<Eigen::Upper>().ldlt().solve(gradient_);
+      if (!solution_.allFinite()) return false;
       for (std::size_t i = 0; i < poses_.size(); ++i) {
         if (slot_[i] != kNone)
-          next_poses_[i] = stepped(poses_[i], solution.segment<6>(6 * slot_[i]));
+          next_poses_[i] = stepped(poses_[i], solution_.segment<6>(6 * slot_[i]));
       }
     }
     for (std::size_t begin = 0; begin < all.size();) {
