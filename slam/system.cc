@@ -1,8 +1,6 @@
 #include "slam/system.h"
 
 #include <algorithm>
-#include <cmath>
-#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "slam/stages/stopwatch.h"
@@ -47,8 +45,9 @@ SystemOptions with_common_values(SystemOptions options) {
   options.loops.points = options.mapping.points;
   options.loops.bundle = options.mapping.bundle;
   options.mapping.prepare = prepare_options(options);
-  options.track.max_keypoint_depth_m = options.max_keypoint_depth_m;
-  options.track.patches.levels = levels;
+  options.track.patches.min_inliers = options.track.min_inliers;
+  options.track.patches.max_depth_m = options.max_keypoint_depth_m;
+  options.track.patches.match.levels = levels;
   options.mapping.describe.patches.levels = levels;
   options.mapping.describe.localise = options.track.localise;
   options.mapping.search.points = options.mapping.points;
@@ -88,7 +87,7 @@ System::~System() {
 
 ImageFeatures System::prepare(const FrameInput& frame, bool initialised) const {
   ImageFeatures image = preparer_->read(frame);
-  if (!initialised || options_.track.front_end == FrontEnd::kOrb) {
+  if (options_.track.front_end == FrontEnd::kOrb || (options_.rgbd && !initialised)) {
     preparer_->extract(
         image, initialised || options_.rgbd ? options_.orb.features : options_.initial_features);
   }
@@ -325,31 +324,17 @@ FinishResult System::finish() {
   return result;
 }
 
-std::optional<PoseEstimate> System::localise_by_patches(const ImageFeatures& image,
-                                                        const Pose& prior_cam_from_world) const {
-  const TrackOptions& options = options_.track;
-  std::vector<LandmarkId> everywhere;
-  for (const Landmark& landmark : map().landmarks) everywhere.push_back(landmark.id);
-  PatchMatchOptions patches = options.patches;
-  patches.max_matches = options_.localise_matches;
-  const PatchMatches found =
-      match_patches(map(), camera_, *image.pyramid, prior_cam_from_world, everywhere, patches);
-  PoseEstimate estimate =
-      optimise_patches(map(), camera_, image.depth, options_.max_keypoint_depth_m,
-                       prior_cam_from_world, found.matches);
-  if (estimate.inliers < options.min_inliers ||
-      estimate.inliers < options.min_patch_share * static_cast<double>(found.tried.size())) {
-    return std::nullopt;
-  }
-  return estimate;
-}
-
 std::optional<PoseEstimate> System::localise(
     ImageFeatures image, const std::optional<Pose>& prior_cam_from_world) const {
   if (!initialised()) return std::nullopt;
   const LocaliseOptions& options = options_.track.localise;
   if (prior_cam_from_world && options_.track.front_end == FrontEnd::kPatches) {
-    std::optional<PoseEstimate> estimate = localise_by_patches(image, *prior_cam_from_world);
+    std::vector<LandmarkId> everywhere;
+    for (const Landmark& landmark : map().landmarks) everywhere.push_back(landmark.id);
+    LocaliseByPatchesOptions patches = options_.track.patches;
+    patches.match.max_matches = options_.localise_matches;
+    std::optional<PoseEstimate> estimate =
+        localise_by_patches(map(), camera_, image, *prior_cam_from_world, everywhere, patches);
     if (estimate) return estimate;
   }
   if (image.features == nullptr) tracker_preparer_->extract(image);

@@ -127,8 +127,6 @@ class System {
 
   void start(ImageFeatures& image, FrameTrack& result);
   TrackResult track_in_map(ImageFeatures& image);
-  std::optional<PoseEstimate> localise_by_patches(const ImageFeatures& image,
-                                                  const Pose& prior_cam_from_world) const;
   void hand_over(const ImageFeatures& image, const TrackResult& tracked, FrameTrack& result);
   void enqueue(int frame_index, int visible_at, MapJob job);
   void take_over(InFlight flight, FrameTrack& result);

@@ -1,6 +1,7 @@
 #include "slam/stages/localise.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "slam/features/matching.h"
 #include "slam/optimize/pose.h"
@@ -50,28 +51,37 @@ std::vector<LandmarkId> supporting_landmarks(const PoseEstimate& estimate) {
   return landmarks;
 }
 
-PoseEstimate optimise_patches(const Map& map, const Camera& camera, const cv::Mat& depth,
-                              double max_depth_m, const Pose& prior_cam_from_world,
-                              const std::vector<PatchMatch>& matches) {
+std::optional<PoseEstimate> localise_by_patches(const Map& map, const Camera& camera,
+                                                const ImageFeatures& image,
+                                                const Pose& guess_cam_from_world,
+                                                const std::vector<LandmarkId>& candidates,
+                                                const LocaliseByPatchesOptions& options) {
+  PatchMatches found =
+      match_patches(map, camera, *image.pyramid, guess_cam_from_world, candidates, options.match);
+  const auto least = std::max(static_cast<double>(options.min_inliers),
+                              options.min_share * static_cast<double>(found.tried.size()));
+  if (static_cast<double>(found.matches.size()) < least) return std::nullopt;
   std::vector<PoseObservation> observations;
-  observations.reserve(matches.size());
-  for (const PatchMatch& match : matches) {
+  observations.reserve(found.matches.size());
+  for (const PatchMatch& match : found.matches) {
     PoseObservation observation;
     observation.point_world = map.landmarks.at(match.landmark).position;
     observation.pixel = match.pixel;
     observation.sigma_px = match.sigma_px();
-    if (!depth.empty()) observation.depth = depth_at(depth, match.raw, max_depth_m);
+    if (!image.depth.empty()) {
+      observation.depth = depth_at(image.depth, match.raw, options.max_depth_m);
+    }
     observations.push_back(observation);
   }
+  const PoseResult result = optimize_pose(camera, guess_cam_from_world, observations);
+  if (result.num_inliers < least) return std::nullopt;
   PoseEstimate estimate;
-  estimate.cam_from_world = prior_cam_from_world;
-  if (observations.size() < 4) return estimate;
-  const PoseResult result = optimize_pose(camera, prior_cam_from_world, observations);
   estimate.cam_from_world = result.cam_from_world;
   estimate.rms = result.rms;
   estimate.inliers = result.num_inliers;
-  for (std::size_t i = 0; i < matches.size(); ++i) {
-    if (result.inlier[i] != 0) estimate.patches.push_back(matches[i]);
+  estimate.visible = std::move(found.tried);
+  for (std::size_t i = 0; i < found.matches.size(); ++i) {
+    if (result.inlier[i] != 0) estimate.patches.push_back(found.matches[i]);
   }
   return estimate;
 }

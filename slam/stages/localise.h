@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "slam/data/camera.h"
@@ -35,10 +36,20 @@ PoseEstimate optimise_matches(const Map& map, const Camera& camera, const Featur
                               const Pose& prior_cam_from_world, std::vector<LandmarkId> matches,
                               const ScaleLevels& levels);
 
-/// The same over landmarks found by their looks; `depth`, if not empty, is the image's.
-PoseEstimate optimise_patches(const Map& map, const Camera& camera, const cv::Mat& depth,
-                              double max_depth_m, const Pose& prior_cam_from_world,
-                              const std::vector<PatchMatch>& matches);
+struct LocaliseByPatchesOptions {
+  PatchMatchOptions match;
+  int min_inliers = 30;
+  double min_share = 0.3;    ///< of the landmarks looked for
+  double max_depth_m = 8.0;  ///< depth beyond it is not used
+};
+
+/// Finds `candidates` by their looks from a nearly known pose and optimises the pose over them,
+/// with depth where the image has it. Nothing with too few inliers.
+std::optional<PoseEstimate> localise_by_patches(const Map& map, const Camera& camera,
+                                                const ImageFeatures& image,
+                                                const Pose& guess_cam_from_world,
+                                                const std::vector<LandmarkId>& candidates,
+                                                const LocaliseByPatchesOptions& options);
 
 /// The keyframes about landmarks in view: those that observe most of them, most first, and their
 /// neighbours.

@@ -240,18 +240,12 @@ TrackResult Tracker::track_patches(const ImageFeatures& image, const Map& map) {
   gather_local_map(image.frame_index, map);
   const std::optional<Pose> aligned = align_with_last(image, map);
   if (!aligned) return result;
-  const PatchMatches found =
-      match_patches(map, camera_, *image.pyramid, *aligned, local_landmarks_, options_.patches);
-  PoseEstimate estimate = optimise_patches(map, camera_, image.depth, options_.max_keypoint_depth_m,
-                                           *aligned, found.matches);
-  if (estimate.inliers < options_.min_inliers ||
-      estimate.inliers < options_.min_patch_share * static_cast<double>(found.tried.size())) {
-    return result;
-  }
-  estimate.visible = found.tried;
+  std::optional<PoseEstimate> estimate =
+      localise_by_patches(map, camera_, image, *aligned, local_landmarks_, options_.patches);
+  if (!estimate) return result;
   result.needs_features = false;
   result.tracked = true;
-  result.estimate = std::move(estimate);
+  result.estimate = std::move(*estimate);
   return result;
 }
 

@@ -30,16 +30,14 @@ struct TrackOptions {
   double keyframe_share_rgbd = 0.75;
   int max_keyframe_interval = 30;
   int min_keyframe_interval = 3;
-  int weak_inliers = 60;         ///< below it a keyframe may come at once
-  double min_patch_share = 0.3;  ///< of the landmarks looked for, to trust patches
+  int weak_inliers = 60;  ///< below it a keyframe may come at once
   /// With patches a keyframe is wanted when fewer than this share of the most landmarks since the
   /// last one is found, or the nearest keyframe is this share of the median depth away.
   double keyframe_share_patches = 0.8;
   double keyframe_distance = 0.1;
   int local_map_age = 5;  ///< frames after which the local map is gathered anew
-  double max_keypoint_depth_m = 8.0;
   AlignFrameOptions align;
-  PatchMatchOptions patches;
+  LocaliseByPatchesOptions patches;
   LocaliseOptions localise;
   RelocaliseOptions relocalise;
 };
