@@ -5,14 +5,11 @@ Usage: benchmark_test.py PLANECAST WORK_FOLDER [unittest arguments]
 """
 
 import csv
-import pathlib
-import shutil
-import subprocess
 import sys
 import unittest
 
-PLANECAST = pathlib.Path(sys.argv[1]).resolve()
-WORK = pathlib.Path(sys.argv[2]).resolve()
+from cli import WORK, empty_work_folder, planecast
+
 CONFIG = """
 title: Tiny suite
 modes: [rgbd]
@@ -26,16 +23,10 @@ sequences:
 """
 
 
-def planecast(*arguments):
-    return subprocess.run([str(PLANECAST), *map(str, arguments)], capture_output=True, text=True,
-                          timeout=600)
-
-
 class Benchmark(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        shutil.rmtree(WORK, ignore_errors=True)
-        WORK.mkdir(parents=True)
+        empty_work_folder()
         (WORK / "config.yaml").write_text(CONFIG, encoding="utf-8")
         cls.done = planecast("benchmark", WORK / "config.yaml", "-o", WORK / "out")
         with open(WORK / "out" / "results.csv", encoding="utf-8") as lines:

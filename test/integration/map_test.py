@@ -5,15 +5,11 @@ Usage: map_test.py PLANECAST WORK_FOLDER [unittest arguments]
 """
 
 import json
-import pathlib
-import shutil
-import subprocess
 import sys
 import unittest
 
-PLANECAST = pathlib.Path(sys.argv[1]).resolve()
-WORK = pathlib.Path(sys.argv[2]).resolve()
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from cli import WORK, empty_work_folder, planecast
+
 SCENE = WORK / "room"
 FIRST = WORK / "first"
 # Around the room at 10 frames a second: 300 frames, of which the first half is mapped.
@@ -23,21 +19,8 @@ HALF = FRAMES // 2
 MAX_ATE_M = 0.02
 
 
-def planecast(*arguments, expect=0):
-    done = subprocess.run(
-        [str(PLANECAST), *map(str, arguments)], cwd=ROOT, capture_output=True, text=True, timeout=900
-    )
-    if done.returncode != expect:
-        raise AssertionError(
-            f"planecast {' '.join(map(str, arguments))}: exit {done.returncode}, "
-            f"expected {expect}\n{done.stdout}\n{done.stderr}"
-        )
-    return done
-
-
 def setUpModule():
-    shutil.rmtree(WORK, ignore_errors=True)
-    WORK.mkdir(parents=True)
+    empty_work_folder()
     planecast("synth", "room", "-o", SCENE, "--width", 320, "--height", 240, "--fps", 10,
               "--quiet")
     planecast("track", SCENE, "-o", FIRST, "--frames", f"0:{HALF}", "--quiet")

@@ -5,32 +5,18 @@ Usage: pipeline_test.py PLANECAST WORK_FOLDER [unittest arguments]
 """
 
 import json
-import pathlib
 import shutil
 import subprocess
 import sys
 import unittest
 
-PLANECAST = pathlib.Path(sys.argv[1]).resolve()
-WORK = pathlib.Path(sys.argv[2]).resolve()
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from cli import ROOT, WORK, empty_work_folder, planecast
+
 TABLETOP = WORK / "tabletop"
 FRAMES = 60
 INTRINSICS = TABLETOP / "camera.yaml"
 # The sequence is 320 x 240 and its scene about 2 m deep: 1 cm is 1.3 px there.
 MAX_ATE_M = 0.01
-
-
-def planecast(*arguments, expect=0):
-    done = subprocess.run(
-        [str(PLANECAST), *map(str, arguments)], cwd=ROOT, capture_output=True, text=True, timeout=600
-    )
-    if done.returncode != expect:
-        raise AssertionError(
-            f"planecast {' '.join(map(str, arguments))}: exit {done.returncode}, "
-            f"expected {expect}\n{done.stdout}\n{done.stderr}"
-        )
-    return done
 
 
 def make_scene(folder, **changes):
@@ -56,8 +42,7 @@ def frame_count(video):
 
 
 def setUpModule():
-    shutil.rmtree(WORK, ignore_errors=True)
-    WORK.mkdir(parents=True)
+    empty_work_folder()
     planecast("synth", "tabletop", "-o", TABLETOP, "--width", 320, "--height", 240,
               "--count", FRAMES, "--quiet")
     images = WORK / "images"
