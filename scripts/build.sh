@@ -8,6 +8,8 @@ launcher=()
 if command -v ccache >/dev/null; then
   # Clones in other folders share what was compiled.
   export CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=1
+  # What precompiled headers need of it.
+  export CCACHE_SLOPPINESS=pch_defines,time_macros
   launcher=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
 fi
 [ "${CI:-}" = true ] && launcher+=(-DPLANECAST_WERROR=ON)
