@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Installs what Planecast needs and is missing, from Debian 12's packages. Quiet when nothing is.
+# With --full also what the tests of the label `full` and the report's 3D view need.
 set -euo pipefail
 
 packages=(
@@ -7,10 +8,16 @@ packages=(
   libopencv-dev libopencv-contrib-dev libeigen3-dev libceres-dev libflann-dev liblz4-dev
   libglm-dev libosmesa6-dev libgl-dev libegl-dev libtinygltf-dev
   libdraco-dev libmeshoptimizer-dev libwebp-dev libstb-dev
+  libimgui-dev libglfw3-dev libglfw3 libx11-dev
   libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libyaml-cpp-dev
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev ffmpeg
   libgtest-dev libgmock-dev
 )
+
+if [ "${1:-}" = --full ]; then
+  packages+=(chromium chromium-driver python3-selenium xvfb xdotool)
+  command -v npm >/dev/null || packages+=(nodejs npm)
+fi
 
 missing=()
 for package in "${packages[@]}"; do
