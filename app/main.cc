@@ -58,6 +58,7 @@ int main(int argc, char** argv) {
   app::add_segment(cli, action);
   app::add_evaluate(cli, action);
   app::add_benchmark(cli, action);
+  app::add_inspect(cli, action);
   app::add_model(cli, action);
   try {
     cli.parse(argc, argv);
