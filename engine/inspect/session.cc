@@ -188,7 +188,7 @@ bool InspectSession::save() {
     return say(error.what());
   }
   unsaved_ = false;
-  message_ = "saved " + scene_path_.string();
+  message_ = "saved " + scene_path_.filename().string();
   return true;
 }
 

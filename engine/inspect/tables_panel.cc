@@ -83,13 +83,13 @@ void InspectWindow::object_sliders() {
   }
   const SceneObject& object = session_.scene().objects[*session_.selected()];
   auto size = static_cast<float>(session_.selected_size());
-  ImGui::SetNextItemWidth(120.0F);
+  ImGui::SetNextItemWidth(88.0F);
   const bool sized = ImGui::DragFloat("Size", &size, 0.005F * size, 1e-4F, 1e4F, "%.3f");
   if (ImGui::IsItemActivated()) session_.begin_drag();
   if (sized) session_.set_size(static_cast<double>(size));
   ImGui::SameLine();
   auto yaw = static_cast<float>(object.yaw_deg);
-  ImGui::SetNextItemWidth(120.0F);
+  ImGui::SetNextItemWidth(88.0F);
   const bool yawed = ImGui::SliderFloat("Yaw", &yaw, -180.0F, 180.0F, "%.0f\u00B0");
   if (ImGui::IsItemActivated()) session_.begin_drag();
   if (yawed) session_.set_yaw(static_cast<double>(yaw));

@@ -5,6 +5,7 @@ Usage: report_browser_test.py PLANECAST WORK_FOLDER [unittest arguments]
 Needs chromium-driver and python3-selenium (scripts/setup.sh --full).
 """
 
+import json
 import re
 import shutil
 import sys
@@ -91,12 +92,11 @@ class Page(unittest.TestCase):
         return [entry for entry in self.page.get_log("browser") if entry["level"] != "INFO"]
 
     def addresses_asked_for(self):
-        found = []
-        for entry in self.page.get_log("performance"):
-            match = re.search(r'"requestWillBeSent".*?"url":"([^"]*)"', entry["message"])
-            if match:
-                found.append(match.group(1))
-        return found
+        """Since the last call: reading the log empties it."""
+        events = [json.loads(entry["message"])["message"]
+                  for entry in self.page.get_log("performance")]
+        return [event["params"]["request"]["url"] for event in events
+                if event["method"] == "Network.requestWillBeSent"]
 
     def frame(self):
         return int(self.find("#frame").get_attribute("value"))
@@ -106,11 +106,10 @@ class Desk(Page):
     def test_nothing_is_loaded_from_outside_and_nothing_goes_wrong(self):
         time.sleep(1.0)
         self.assertEqual(self.messages(), [])
-        outside = [a for a in self.addresses_asked_for()
-                   if not a.startswith(("data:", "blob:", "file:"))]
-        self.assertEqual(outside, [])
-        files = [a for a in self.addresses_asked_for() if a.startswith("file:")]
-        self.assertEqual({f.rsplit("/", 1)[-1] for f in files} - {"favicon.ico"}, {"report.html"})
+        asked = self.addresses_asked_for()
+        self.assertEqual([a for a in asked if not a.startswith(("data:", "blob:", "file:"))], [])
+        files = {a.rsplit("/", 1)[-1] for a in asked if a.startswith("file:")}
+        self.assertEqual(files - {"favicon.ico"}, {"report.html"})
 
     def test_the_map_turns_when_dragged(self):
         canvas = self.show(self.find("#map canvas"))
