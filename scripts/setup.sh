@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Installs what Planecast needs and is missing, from Debian 12's packages. Quiet when nothing is.
+# Usage: scripts/setup.sh [PACKAGE...] (others instead: what some tests need)
 set -euo pipefail
 
 packages=(
@@ -11,6 +12,8 @@ packages=(
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev ffmpeg
   libgtest-dev libgmock-dev
 )
+
+[ $# -eq 0 ] || packages=("$@")
 
 missing=()
 for package in "${packages[@]}"; do
