@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "engine/segmentation/choose_segmenter.h"
 #include "engine/sequence/frame_options.h"
 #include "engine/user_error.h"
 
@@ -56,14 +57,21 @@ std::unique_ptr<engine::Sequence> InputOptions::open() const {
   return engine::open_sequence(sequence, result);
 }
 
+void add_segmentation_options(CLI::App& command, std::string& segmentation, std::string& network) {
+  command
+      .add_option("--segmentation", segmentation,
+                  "Plane masks: auto, network, masks, depth or none")
+      ->check(CLI::IsMember(engine::segmentation_kinds()))
+      ->capture_default_str();
+  command.add_option("--network", network,
+                     "ONNX file for the masks, its description beside it (default: our own)");
+}
+
 void add_tracking_options(CLI::App& command, TrackingOptions& options) {
   command.add_option("--mode", options.mode, "mono, rgbd or auto")
       ->check(CLI::IsMember({"mono", "rgbd", "auto"}))
       ->capture_default_str();
-  command
-      .add_option("--segmentation", options.segmentation, "Plane masks: auto, masks, depth or none")
-      ->check(CLI::IsMember({"auto", "masks", "depth", "none"}))
-      ->capture_default_str();
+  add_segmentation_options(command, options.segmentation, options.network);
   command.add_flag("--causal", options.causal,
                    "Each frame as it was known at its time (default: two passes)");
   command.add_flag("--no-loop-closing", options.no_loop_closing,
@@ -88,6 +96,7 @@ engine::TrackSequenceOptions TrackingOptions::resolve(const CommonOptions& commo
   engine::TrackSequenceOptions result;
   result.mode = mode;
   result.segmentation = segmentation;
+  result.network = network;
   result.causal = causal;
   result.close_loops = !no_loop_closing;
   result.threads = common.threads;
@@ -106,8 +115,11 @@ engine::Reconstruction track_with_progress(engine::Sequence& sequence,
                                            const Console& console) {
   for (const std::string& warning : sequence.warnings()) console.warning(warning);
   ProgressBar bar(console, "tracking");
-  return engine::track_sequence(sequence, options,
-                                [&bar](int done, int total) { bar.update(done, total); });
+  engine::Reconstruction reconstruction = engine::track_sequence(
+      sequence, options, [&bar](int done, int total) { bar.update(done, total); });
+  bar.finish();
+  console.info("plane masks: " + reconstruction.segmentation);
+  return reconstruction;
 }
 
 TrackingReport report_tracking(const engine::Reconstruction& reconstruction, bool causal) {
