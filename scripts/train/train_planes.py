@@ -61,7 +61,10 @@ def losses(out, batch):
                                                   pos_weight=torch.tensor(3.0))
     cosine = F.cosine_similarity(out[:, 2:5], batch["normals"], dim=1)
     normal = (2 * (1 - cosine) * planar).sum() / planar.sum().clamp(min=1)
-    pull, push, spread = embedding_loss(out[:, 5:], batch["instances"])
+    # Every second row and column says enough of means, at a quarter of the time.
+    row, column = torch.randint(2, (2,)).tolist()
+    pull, push, spread = embedding_loss(out[:, 5:, row::2, column::2],
+                                        batch["instances"][:, row::2, column::2])
     return {"planarity": planarity.sum() / judged.sum(), "boundary": boundary, "normal": normal,
             "pull": pull, "push": push, "spread": spread}
 

@@ -6,149 +6,241 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
-#include <opencv2/imgproc.hpp>
+#include <utility>
 #include <vector>
 
 namespace planecast::slam {
 namespace {
 
-using Embedding = std::array<float, 4>;
 using Values = Eigen::ArrayXf;
+using Map = Eigen::Map<const Values>;
 
-float logit(float probability) { return std::log(probability / (1.0F - probability)); }
+Values sigmoid(const float* logits, Eigen::Index count) {
+  return 1.0F / (1.0F + (-Map(logits, count)).exp());
+}
 
-/// Pixels of every second row and column: enough to find the means.
-struct Samples {
-  std::array<Values, 4> embedding;
-  Values seed_quality;  ///< how far inside its instance; 0: no seed, or taken
-
-  Embedding at(Eigen::Index i) const {
-    return {embedding[0][i], embedding[1][i], embedding[2][i], embedding[3][i]};
-  }
-  Eigen::Array<bool, Eigen::Dynamic, 1> near(const Embedding& mean, float radius) const {
-    return (embedding[0] - mean[0]).square() + (embedding[1] - mean[1]).square() +
-               (embedding[2] - mean[2]).square() + (embedding[3] - mean[3]).square() <=
-           radius * radius;
-  }
+/// A step between two neighbouring pixels.
+struct Step {
+  int a = 0;
+  int b = 0;
+  float weight = 0.0F;
+  float boundary = 0.0F;
 };
 
-float distance2(const Embedding& a, const Embedding& b) {
-  float sum = 0.0F;
-  for (std::size_t c = 0; c < 4; ++c) sum += (a[c] - b[c]) * (a[c] - b[c]);
-  return sum;
-}
-
-Samples collect(const PlaneMaps& maps, const cv::Mat& planar, const cv::Mat& inner) {
-  // Distance to the next boundary: seeds are taken in the middle of instances.
-  cv::Mat depth;
-  cv::distanceTransform(inner, depth, cv::DIST_L1, 3);
-  std::array<std::vector<float>, 5> values;
-  for (int y = 1; y < planar.rows; y += 2) {
-    for (int x = 1; x < planar.cols; x += 2) {
-      if (planar.at<unsigned char>(y, x) == 0) continue;
-      for (std::size_t c = 0; c < 4; ++c) {
-        values[c].push_back(maps.embedding[c].at<float>(y, x));
-      }
-      values[4].push_back(depth.at<float>(y, x));
+/// All steps of the grid by rising weight, equal ones (to a 256th of the largest) in the order of
+/// the pixels.
+std::vector<Step> sorted_steps(const PlaneMaps& maps, const Values& boundary,
+                               float embedding_weight) {
+  const int cols = maps.cols;
+  const auto pixels = static_cast<Eigen::Index>(maps.rows) * cols;
+  std::vector<Step> steps;
+  steps.reserve(2 * static_cast<std::size_t>(pixels));
+  float heaviest = 1e-6F;
+  for (const int stride : {1, cols}) {
+    const Eigen::Index count = pixels - stride;
+    Values change = Values::Zero(count);
+    for (int c = 0; c < 4; ++c) {
+      const float* plane = maps.embedding + c * pixels;
+      change += (Map(plane + stride, count) - Map(plane, count)).square();
+    }
+    const Values strength = boundary.head(count).max(boundary.tail(count));
+    const Values weight = strength + embedding_weight * change.sqrt();
+    for (Eigen::Index i = 0; i < count; ++i) {
+      if (stride == 1 && (i + 1) % cols == 0) continue;
+      heaviest = std::max(heaviest, weight[i]);
+      steps.push_back({static_cast<int>(i), static_cast<int>(i) + stride, weight[i], strength[i]});
     }
   }
-  const auto array = [](const std::vector<float>& v) {
-    return Values(Eigen::Map<const Values>(v.data(), static_cast<Eigen::Index>(v.size())));
+  constexpr int kBins = 256;
+  const float scale = (kBins - 1) / heaviest;
+  std::array<int, kBins + 1> begin{};
+  for (const Step& step : steps) ++begin[static_cast<std::size_t>(step.weight * scale) + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<Step> sorted(steps.size());
+  for (const Step& step : steps) {
+    int& at = begin[static_cast<std::size_t>(step.weight * scale)];
+    sorted[static_cast<std::size_t>(at++)] = step;
+  }
+  return sorted;
+}
+
+/// Disjoint sets of pixels.
+class Groups {
+ public:
+  explicit Groups(int pixels)
+      : parent_(static_cast<std::size_t>(pixels)),
+        size_(parent_.size(), 1),
+        widest_(parent_.size(), 0.0F) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
+  int find(int i) {
+    while (parent_[at(i)] != i) {
+      parent_[at(i)] = parent_[at(parent_[at(i)])];
+      i = parent_[at(i)];
+    }
+    return i;
+  }
+  void unite(int a, int b, float weight) {
+    if (size_[at(a)] < size_[at(b)]) std::swap(a, b);
+    parent_[at(b)] = a;
+    size_[at(a)] += size_[at(b)];
+    widest_[at(a)] = std::max({weight, widest_[at(a)], widest_[at(b)]});
+  }
+  int size(int root) const { return size_[at(root)]; }
+  /// Heaviest step that a group may take.
+  float limit(int root, float coherence) const {
+    return widest_[at(root)] + coherence / static_cast<float>(size_[at(root)]);
+  }
+
+ private:
+  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+  std::vector<int> parent_;
+  std::vector<int> size_;
+  std::vector<float> widest_;
+};
+
+/// Groups of pixels; `steps` keeps those that cross between them.
+Groups group_pixels(int pixels, std::vector<Step>& steps, const DecodeOptions& options) {
+  Groups groups(pixels);
+  const auto keep_crossing = [&steps](auto&& crosses) {
+    steps.erase(std::remove_if(steps.begin(), steps.end(),
+                               [&](const Step& step) { return !crosses(step); }),
+                steps.end());
   };
-  Samples samples;
-  for (std::size_t c = 0; c < 4; ++c) samples.embedding[c] = array(values[c]);
-  samples.seed_quality = array(values[4]);
-  return samples;
-}
-
-/// The mean to which a seed drifts.
-Embedding shift(const Samples& samples, Embedding mean, const DecodeOptions& options) {
-  for (int i = 0; i < options.shifts; ++i) {
-    const Values inside = samples.near(mean, options.radius).cast<float>();
-    const float count = std::max(inside.sum(), 1.0F);
-    Embedding next;
-    for (std::size_t c = 0; c < 4; ++c) next[c] = (inside * samples.embedding[c]).sum() / count;
-    const bool settled = distance2(next, mean) < 1e-4F;
-    mean = next;
-    if (settled) break;
-  }
-  return mean;
-}
-
-std::vector<Embedding> find_means(Samples& samples, const DecodeOptions& options) {
-  const float same2 = 0.25F * options.radius * options.radius;
-  std::vector<Embedding> means;
-  if (samples.seed_quality.size() == 0) return means;
-  for (int i = 0; i < options.seeds; ++i) {
-    Eigen::Index seed = 0;
-    if (samples.seed_quality.maxCoeff(&seed) <= 0.0F) break;
-    const Embedding mean = shift(samples, samples.at(seed), options);
-    samples.seed_quality[seed] = 0.0F;
-    samples.seed_quality = samples.near(mean, options.radius).select(0.0F, samples.seed_quality);
-    const bool known = std::any_of(means.begin(), means.end(), [&](const Embedding& other) {
-      return distance2(mean, other) < same2;
-    });
-    if (!known) means.push_back(mean);
-  }
-  return means;
-}
-
-/// Each planar pixel to the nearest mean within reach: 1.., or 0.
-cv::Mat assign(const PlaneMaps& maps, const cv::Mat& planar, const std::vector<Embedding>& means,
-               float reach) {
-  const auto pixels = static_cast<Eigen::Index>(planar.total());
-  const auto values = [pixels](const cv::Mat& map) {
-    return Eigen::Map<const Values>(map.ptr<float>(), pixels);
-  };
-  Values best = Values::Constant(pixels, reach * reach);
-  Values label = Values::Zero(pixels);
-  for (std::size_t m = 0; m < means.size(); ++m) {
-    const Values distance2 = (values(maps.embedding[0]) - means[m][0]).square() +
-                             (values(maps.embedding[1]) - means[m][1]).square() +
-                             (values(maps.embedding[2]) - means[m][2]).square() +
-                             (values(maps.embedding[3]) - means[m][3]).square();
-    label = (distance2 < best).select(static_cast<float>(m + 1), label);
-    best = best.min(distance2);
-  }
-  cv::Mat labels;
-  cv::Mat(planar.size(), CV_32F, label.data()).convertTo(labels, CV_16U);
-  labels.setTo(0, planar == 0);
-  return labels;
-}
-
-/// Numbers what is large enough by falling size.
-void renumber(cv::Mat& labels, int count, double min_share) {
-  std::vector<int> pixels(static_cast<std::size_t>(count) + 1, 0);
-  for (int y = 0; y < labels.rows; ++y) {
-    for (int x = 0; x < labels.cols; ++x) ++pixels[labels.at<ushort>(y, x)];
-  }
-  std::vector<int> order(static_cast<std::size_t>(count));
-  std::iota(order.begin(), order.end(), 1);
-  std::stable_sort(order.begin(), order.end(), [&pixels](int a, int b) {
-    return pixels[static_cast<std::size_t>(a)] > pixels[static_cast<std::size_t>(b)];
+  keep_crossing([&](const Step& step) {
+    const int a = groups.find(step.a);
+    const int b = groups.find(step.b);
+    if (a == b) return false;
+    const float limit =
+        std::min(groups.limit(a, options.coherence), groups.limit(b, options.coherence));
+    if (step.weight > limit) return true;
+    groups.unite(a, b, step.weight);
+    return false;
   });
-  std::vector<ushort> table(pixels.size(), 0);
-  ushort next = 1;
-  for (const int label : order) {
-    const auto at = static_cast<std::size_t>(label);
-    if (pixels[at] >= min_share * static_cast<double>(labels.total())) table[at] = next++;
+  const double small = options.small_share * pixels;
+  keep_crossing([&](const Step& step) {
+    const int a = groups.find(step.a);
+    const int b = groups.find(step.b);
+    if (a == b) return false;
+    if (groups.size(a) >= small && groups.size(b) >= small) return true;
+    groups.unite(a, b, 0.0F);
+    return false;
+  });
+  return groups;
+}
+
+/// Region of each pixel, numbered from 0 in the order of the pixels, and how many there are.
+std::pair<std::vector<int>, int> number_groups(Groups& groups, int pixels) {
+  std::vector<int> number(static_cast<std::size_t>(pixels), -1);
+  std::vector<int> region(number.size());
+  int count = 0;
+  for (int i = 0; i < pixels; ++i) {
+    int& of_root = number[static_cast<std::size_t>(groups.find(i))];
+    if (of_root < 0) of_root = count++;
+    region[static_cast<std::size_t>(i)] = of_root;
   }
-  for (int y = 0; y < labels.rows; ++y) {
-    for (int x = 0; x < labels.cols; ++x) {
-      labels.at<ushort>(y, x) = table[labels.at<ushort>(y, x)];
+  return {std::move(region), count};
+}
+
+std::vector<RegionSums> sum_regions(const PlaneMaps& maps, const std::vector<int>& region,
+                                    int count) {
+  const auto pixels = static_cast<Eigen::Index>(region.size());
+  const Values planarity = sigmoid(maps.planarity, pixels);
+  const Map nx(maps.normal, pixels);
+  const Map ny(maps.normal + pixels, pixels);
+  const Map nz(maps.normal + 2 * pixels, pixels);
+  const Values scale = (nx.square() + ny.square() + nz.square() + 1e-12F).rsqrt();
+  std::vector<RegionSums> sums(static_cast<std::size_t>(count));
+  for (Eigen::Index i = 0; i < pixels; ++i) {
+    RegionSums& sum = sums[static_cast<std::size_t>(region[static_cast<std::size_t>(i)])];
+    sum.pixels += 1.0F;
+    sum.planarity += planarity[i];
+    sum.normal[0] += scale[i] * nx[i];
+    sum.normal[1] += scale[i] * ny[i];
+    sum.normal[2] += scale[i] * nz[i];
+    for (int c = 0; c < 4; ++c) {
+      sum.embedding[static_cast<std::size_t>(c)] += maps.embedding[c * pixels + i];
     }
   }
+  return sums;
+}
+
+/// Label of each region: planar ones by falling size, parts of one plane together.
+std::vector<int> label_regions(const RegionGraph& graph, double pixels,
+                               const DecodeOptions& options) {
+  std::vector<int> roots;
+  for (int r = 0; r < graph.count(); ++r) {
+    const RegionSums& sums = graph.sums(r);
+    if (graph.root(r) == r && sums.planarity >= options.min_planarity * sums.pixels) {
+      roots.push_back(r);
+    }
+  }
+  const auto larger = [](float a, float b) { return a > b; };
+  std::stable_sort(roots.begin(), roots.end(), [&](int a, int b) {
+    return larger(graph.sums(a).pixels, graph.sums(b).pixels);
+  });
+  std::vector<int> plane_of(static_cast<std::size_t>(graph.count()), -1);
+  std::vector<int> first;  // region of each plane
+  std::vector<float> size;
+  for (const int root : roots) {
+    const auto same = std::find_if(first.begin(), first.end(), [&](int other) {
+      return RegionSums::distance(graph.sums(root), graph.sums(other)) < options.same_distance &&
+             RegionSums::cosine(graph.sums(root), graph.sums(other)) > options.same_cosine;
+    });
+    const auto plane = static_cast<std::size_t>(same - first.begin());
+    if (same == first.end()) {
+      first.push_back(root);
+      size.push_back(0.0F);
+    }
+    size[plane] += graph.sums(root).pixels;
+    plane_of[static_cast<std::size_t>(root)] = static_cast<int>(plane);
+  }
+  std::vector<int> order(first.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    return larger(size[static_cast<std::size_t>(a)], size[static_cast<std::size_t>(b)]);
+  });
+  std::vector<int> label_of(first.size(), 0);
+  int next = 1;
+  for (const int plane : order) {
+    if (size[static_cast<std::size_t>(plane)] < options.min_share * pixels) break;
+    label_of[static_cast<std::size_t>(plane)] = next++;
+  }
+  std::vector<int> labels;
+  for (int r = 0; r < graph.count(); ++r) {
+    const int plane = plane_of[static_cast<std::size_t>(graph.root(r))];
+    labels.push_back(plane < 0 ? 0 : label_of[static_cast<std::size_t>(plane)]);
+  }
+  return labels;
 }
 
 }  // namespace
 
+PlaneMaps PlaneMaps::of(const float* block, int rows, int cols) {
+  const std::ptrdiff_t pixels = static_cast<std::ptrdiff_t>(rows) * cols;
+  return {rows, cols, block, block + pixels, block + 2 * pixels, block + 5 * pixels};
+}
+
 cv::Mat decode_planes(const PlaneMaps& maps, const DecodeOptions& options) {
-  const cv::Mat planar = maps.planarity > logit(options.min_planarity);
-  const cv::Mat inner = planar & (maps.boundary < logit(options.min_boundary));
-  Samples samples = collect(maps, planar, inner);
-  const std::vector<Embedding> means = find_means(samples, options);
-  cv::Mat labels = assign(maps, planar, means, 1.5F * options.radius);
-  renumber(labels, static_cast<int>(means.size()), options.min_share);
+  const int pixels = maps.rows * maps.cols;
+  const Values boundary = sigmoid(maps.boundary, pixels);
+  std::vector<Step> steps = sorted_steps(maps, boundary, options.embedding_weight);
+  Groups groups = group_pixels(pixels, steps, options);
+  const auto [region, count] = number_groups(groups, pixels);
+  RegionGraph graph(sum_regions(maps, region, count));
+  for (const Step& step : steps) {
+    const int a = region[static_cast<std::size_t>(step.a)];
+    const int b = region[static_cast<std::size_t>(step.b)];
+    if (a != b) graph.add_border(a, b, step.boundary);
+  }
+  graph.merge(options.costs);
+  const std::vector<int> label_of = label_regions(graph, pixels, options);
+  cv::Mat labels(maps.rows, maps.cols, CV_16U);
+  for (int i = 0; i < pixels; ++i) {
+    labels.at<ushort>(i / maps.cols, i % maps.cols) = static_cast<ushort>(
+        label_of[static_cast<std::size_t>(region[static_cast<std::size_t>(i)])]);
+  }
   return labels;
 }
 

@@ -1,29 +1,42 @@
 #pragma once
 
-#include <array>
 #include <opencv2/core.hpp>
+
+#include "slam/segmentation/region_graph.h"
 
 namespace planecast::slam {
 
-/// What the network says of each of its pixels; all of one size.
+/// What the network says of each of its pixels: nine planes of CV_32F, one after the other.
 struct PlaneMaps {
-  cv::Mat planarity;  ///< CV_32F logit: on a plane
-  cv::Mat boundary;   ///< CV_32F logit: beside another instance
-  std::array<cv::Mat, 4> embedding;  ///< CV_32F each: near on one plane, apart on two
+  static constexpr int kChannels = 9;
+
+  int rows = 0;
+  int cols = 0;
+  const float* planarity = nullptr;  ///< logit: on a plane
+  const float* boundary = nullptr;   ///< logit: beside another instance
+  const float* normal = nullptr;     ///< three, not normalised, in the camera's frame
+  const float* embedding = nullptr;  ///< four: near on one plane, apart on two
+
+  /// Views of a block of kChannels x rows x cols floats, in this order.
+  static PlaneMaps of(const float* block, int rows, int cols);
 };
 
+/// Chosen on the validation rooms (scripts/train/README.md).
 struct DecodeOptions {
-  float min_planarity = 0.5F;  ///< probability
-  float min_boundary = 0.5F;   ///< probability from which a pixel may part two instances
-  float radius = 1.0F;         ///< of the mean shift, in embedding units
-  int seeds = 24;              ///< at most, and so instances
-  int shifts = 4;              ///< of each seed's mean
+  float coherence = 0.5F;         ///< k of the first grouping: larger, larger groups
+  float embedding_weight = 1.0F;  ///< of a step's change of embedding against its boundary
+  double small_share = 0.003;     ///< of the picture; smaller groups join a neighbour
+  MergeCosts costs;
+  float min_planarity = 0.5F;  ///< mean probability of an instance
+  float same_distance = 0.6F;  ///< embeddings of two parts of one plane...
+  float same_cosine = 0.95F;   ///< ...and their normals
   double min_share = 0.002;    ///< of the picture; smaller instances are dropped
 };
 
 /// Instances from a network's maps: CV_16U of their size, 0 = not planar, 1, 2, ... by falling
-/// size. Mean shift with a flat kernel (Yu et al. 2019, associative embedding), one seed after the
-/// other, each from the middle of what is left, far from boundaries.
+/// size. Pixels are grouped along weak steps (graph-based segmentation, Felzenszwalb & Huttenlocher
+/// 2004), groups merged across weak borders, and what is planar and alike is one plane also where
+/// something stands between.
 cv::Mat decode_planes(const PlaneMaps& maps, const DecodeOptions& options = {});
 
 }  // namespace planecast::slam

@@ -13,8 +13,6 @@
 namespace planecast::slam {
 namespace {
 
-constexpr int kMapChannels = 9;
-
 /// Which file it was: 64 bits of FNV-1a, eight hexadecimal digits.
 std::string checksum(const std::vector<unsigned char>& bytes) {
   std::uint64_t hash = 0xCBF29CE484222325ULL;
@@ -107,16 +105,11 @@ class NetworkSegmenter : public PlaneSegmenter {
 
   cv::Mat from_maps(const std::vector<cv::Mat>& outputs) const {
     const cv::Mat& blob = outputs.at(0);
-    if (slices(blob) != kMapChannels) {
+    if (blob.dims != 4 || slices(blob) != PlaneMaps::kChannels) {
       throw std::runtime_error("the output has " + std::to_string(slices(blob)) +
-                               " channels instead of " + std::to_string(kMapChannels));
+                               " channels instead of " + std::to_string(PlaneMaps::kChannels));
     }
-    PlaneMaps maps;
-    maps.planarity = slice(blob, 0);
-    maps.boundary = slice(blob, 1);
-    for (int c = 0; c < 4; ++c) {
-      maps.embedding[static_cast<std::size_t>(c)] = slice(blob, 5 + c);
-    }
+    const PlaneMaps maps = PlaneMaps::of(blob.ptr<float>(), blob.size[2], blob.size[3]);
     return decode_planes(maps, description_.decode);
   }
 

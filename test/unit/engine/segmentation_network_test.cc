@@ -95,7 +95,6 @@ TEST_F(NetworkFile, ErrorsAreOneLineThatNamesTheFile) {
       {kInput + std::string("min_score: 7\n"), "net.yaml:2: min_score: expected 0 to 1"},
       {kInput + std::string("masks: nothing\n"), "net.onnx: "},
       {"input: {name: face, width: 32, height: 32}\n", "net.onnx: "},
-      {"input: {name: image, width: 33, height: 32}\n", "net.onnx: "},
       {"kind: maps\noutput: masks\n" + std::string(kInput), "net.onnx: the output has 3 channels"},
   };
   for (const auto& [description, what] : cases) {
