@@ -11,6 +11,7 @@
 #include "engine/pipeline/earlier_map.h"
 #include "engine/pipeline/map_to_records.h"
 #include "engine/scene/plane_classes.h"
+#include "engine/segmentation/choose_segmenter.h"
 #include "engine/user_error.h"
 #include "slam/system.h"
 
@@ -25,24 +26,6 @@ bool use_depth(const Sequence& sequence, const std::string& mode) {
     throw UserError(sequence.path().string() + ": --mode rgbd needs depth, and there is none");
   }
   return true;
-}
-
-std::unique_ptr<slam::PlaneSegmenter> choose_segmenter(const Sequence& sequence, bool rgbd,
-                                                       const std::string& wish) {
-  std::string kind = wish;
-  if (kind == "auto") kind = sequence.has_labels() ? "masks" : rgbd ? "depth" : "none";
-  if (kind == "none") return slam::make_no_segmenter();
-  if (kind == "masks") {
-    if (!sequence.has_labels()) {
-      throw UserError(sequence.path().string() + ": --segmentation masks needs mask.txt");
-    }
-    return slam::make_mask_segmenter();
-  }
-  if (kind == "depth") {
-    if (!rgbd) throw UserError("--segmentation depth needs --mode rgbd");
-    return slam::make_depth_segmenter(sequence.camera());
-  }
-  throw UserError("--segmentation " + kind + ": expected auto, masks, depth or none");
 }
 
 std::shared_ptr<const slam::Vocabulary> load_vocabulary() {
@@ -125,7 +108,7 @@ class TwoPassTracker {
         rgbd_(use_depth(sequence, options.mode)),
         earlier_(read_earlier_map(options.map, sequence, rgbd_)),
         system_(system_options(options, rgbd_), earlier_.camera,
-                choose_segmenter(sequence, rgbd_, options.segmentation)),
+                choose_segmenter({options.segmentation, options.network}, sequence, rgbd_)),
         first_(sequence.first_frame()),
         count_(sequence.end_frame() - sequence.first_frame()) {
     frames_.resize(static_cast<std::size_t>(count_));
@@ -291,6 +274,7 @@ Reconstruction TwoPassTracker::records() {
       map_to_records(system_.map(), system_.camera(), earlier_.metric, first_own_keyframe_);
   result.map = std::make_shared<const slam::Map>(system_.map());
   result.mode = rgbd_ ? "rgbd" : "mono";
+  result.segmentation = system_.segmentation();
   if (joint_.plane_rms_before > 0.0) {
     result.plane_rms = PlaneRms{joint_.plane_rms_before,
                                 joint_.kept ? joint_.plane_rms_after : joint_.plane_rms_before};

@@ -57,6 +57,8 @@ class KeyframeMapper {
  public:
   KeyframeMapper(const KeyframeMapperOptions& options, const Camera& camera,
                  std::unique_ptr<PlaneSegmenter> segmenter);
+  /// Name and version of what says where planes are.
+  std::string segmentation() const { return segmenter_->name(); }
 
   /// Planes of a map that was just initialised. `images`: those of its keyframes, in order.
   KeyframeReport start(Map& map, const std::vector<ImageFeatures>& images);
