@@ -13,6 +13,7 @@
 #include "engine/scene/plane_classes.h"
 #include "engine/segmentation/choose_segmenter.h"
 #include "engine/user_error.h"
+#include "slam/stages/smooth_path.h"
 #include "slam/system.h"
 
 namespace planecast::engine {
@@ -113,6 +114,7 @@ class TwoPassTracker {
         count_(sequence.end_frame() - sequence.first_frame()) {
     frames_.resize(static_cast<std::size_t>(count_));
     tracked_.resize(static_cast<std::size_t>(count_));
+    localised_.resize(static_cast<std::size_t>(count_));
     times_.resize(static_cast<std::size_t>(count_));
     if (earlier_.map != nullptr) {
       system_.load(*earlier_.map);
@@ -138,6 +140,7 @@ class TwoPassTracker {
   void localise_run(int begin, int end, int step, int& done);
   bool localise_frame(int position, const std::optional<slam::Pose>& prior,
                       const slam::ImageFeatures& image);
+  void smooth();
   void record_first(int position, const slam::FrameTrack& track);
   Reconstruction records();
 
@@ -152,6 +155,7 @@ class TwoPassTracker {
   int count_;
   std::vector<FrameRecord> frames_;
   std::vector<Tracked> tracked_;
+  std::vector<std::optional<slam::PathPose>> localised_;  ///< in the second pass
   std::vector<StageTimes> times_;
   std::map<std::string, std::vector<double>> mapping_times_;
   slam::JointResult joint_;
@@ -219,6 +223,11 @@ bool TwoPassTracker::localise_frame(int position, const std::optional<slam::Pose
   FrameRecord& record = frames_[static_cast<std::size_t>(position)];
   record.world_from_cam = estimate->cam_from_world.inverse();
   record.inliers = estimate->inliers;
+  // Poses that claim to be better than a tenth of the expected errors are not believed.
+  constexpr double kLeastVariance = 0.01;
+  localised_[static_cast<std::size_t>(position)] = slam::PathPose{
+      estimate->cam_from_world,
+      estimate->information / std::max(estimate->rms * estimate->rms, kLeastVariance)};
   if (record.state != "tracked") record.state = "localised";
   return true;
 }
@@ -266,6 +275,33 @@ void TwoPassTracker::second_pass() {
     const slam::Pose prior =
         frames_[static_cast<std::size_t>(position + 1)].world_from_cam->inverse();
     localise_frame(position, prior, system_.prepare(sequence_.read(first_ + position), true));
+  }
+  smooth();
+}
+
+/// Smooths each run of frames that were localised one after the other.
+void TwoPassTracker::smooth() {
+  std::vector<double> gaps;
+  for (std::size_t p = 1; p < frames_.size(); ++p) {
+    gaps.push_back(frames_[p].timestamp - frames_[p - 1].timestamp);
+  }
+  if (gaps.empty()) return;
+  std::nth_element(gaps.begin(), gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2),
+                   gaps.end());
+  // A frame that the recorder dropped is a gap as well.
+  const double longest_gap = 1.5 * gaps[gaps.size() / 2];
+  for (std::size_t begin = 0; begin < frames_.size();) {
+    std::vector<slam::PathPose> path;
+    std::size_t end = begin;
+    for (; end < frames_.size() && localised_[end]; ++end) {
+      if (end > begin && frames_[end].timestamp - frames_[end - 1].timestamp > longest_gap) break;
+      path.push_back(*localised_[end]);
+    }
+    const std::vector<slam::Pose> smooth = slam::smooth_path(path);
+    for (std::size_t i = 0; i < smooth.size(); ++i) {
+      frames_[begin + i].world_from_cam = smooth[i].inverse();
+    }
+    begin = std::max(end, begin + 1);
   }
 }
 

@@ -71,7 +71,8 @@ class KeyframeMapper {
 
  private:
   KeyframeId put_keyframe(Map& map, KeyframeJob& job, StageTimes& times);
-  void create_points(Map& map, KeyframeId id, const ImageFeatures& image, PointMappingStats& stats);
+  void create_points(Map& map, KeyframeId id, const ImageFeatures& image, PointMappingStats& stats,
+                     StageTimes& times);
   void segment(const ImageFeatures& image, Keyframe& keyframe, StageTimes& times);
 
   KeyframeMapperOptions options_;
