@@ -9,7 +9,8 @@ scripts/setup.sh \
   zsh fish mandoc groff-base \
   parallel \
   slurmctld slurmd slurm-client munge \
-  debootstrap dpkg-dev
+  debootstrap dpkg-dev \
+  chromium chromium-driver python3-selenium xvfb xdotool
 scripts/build.sh release
 scripts/build.sh release system_test
 ctest --preset release -L full --no-tests=error "$@"
