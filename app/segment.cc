@@ -89,9 +89,11 @@ void add_segment(CLI::App& app, Action& action) {
   add_segmentation_options(*command, options->segmentation, options->network);
   command->add_flag("--overlay", options->overlay, "Also write the pictures with coloured planes");
   add_common_options(*command, options->common);
-  set_examples(*command,
-               {{"planecast segment desk -o out/masks", "Masks from the sequence's depth"},
-                {"planecast segment desk --frames 120:121 -o out/masks", "Of one frame"}});
+  set_examples(
+      *command,
+      {{"planecast segment desk -o out/masks", "Masks from the sequence's depth"},
+       {"planecast segment desk --frames 120:121 -o out/masks", "Of one frame"},
+       {"planecast segment desk.jpg --overlay -o out/masks", "Of one picture, by the network"}});
   command->callback([options, &action] { action = [options] { return options->run(); }; });
 }
 

@@ -143,7 +143,7 @@ std::optional<StartBundle> MonoInitialiser::bundle_since_reference(
   if (!options_.by_patches || !enough_parallax) return std::nullopt;
   std::optional<StartBundle> bundle =
       bundle_start(camera_, followed(), two_view.cur_from_ref, options_.start_bundle);
-  if (bundle && !bundle->good) bundle.reset();
+  if (!bundle || !bundle->good) return std::nullopt;
   return bundle;
 }
 
