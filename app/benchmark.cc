@@ -2,10 +2,12 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "app/commands.h"
+#include "app/manual.h"
 #include "app/options.h"
 #include "engine/benchmark/config.h"
 #include "engine/benchmark/report_files.h"
@@ -15,20 +17,27 @@
 namespace planecast::app {
 namespace {
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
-  return text;
+nlohmann::ordered_json to_json(const std::vector<engine::BenchmarkRow>& rows) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const engine::BenchmarkRow& row : rows) {
+    json.push_back({{"sequence", row.run.sequence->name},
+                    {"mode", row.run.mode},
+                    {"variant", row.run.variant->name},
+                    {"seed", row.run.seed},
+                    {"status", row.status},
+                    {"metrics", row.metrics}});
+  }
+  return json;
 }
 
 struct BenchmarkCommand {
-  bool quiet = false;
+  CommonOptions common;
   std::string config;
   int seeds = 0;  ///< 0: as the configuration says
   engine::BenchmarkOptions options;
 
   int run() {
-    const Console console(quiet ? Verbosity::kQuiet : Verbosity::kNormal, false);
+    const Console console = common.console();
     const engine::BenchmarkConfig plan = engine::read_benchmark_config(config);
     for (int seed = 1; seed <= seeds; ++seed) {
       options.seeds.push_back(static_cast<std::uint64_t>(seed));
@@ -40,7 +49,8 @@ struct BenchmarkCommand {
         });
     const std::vector<engine::BenchmarkRow> rows = runner.run();
     engine::write_benchmark_report(plan, rows, runner, facts(plan), options.output);
-    console.result((options.output / "results.md").string());
+    const std::string results = (options.output / "results.md").string();
+    common.print_result(results, {{"results", results}, {"rows", to_json(rows)}});
     const bool failed = std::any_of(rows.begin(), rows.end(), [](const engine::BenchmarkRow& row) {
       return !row.usable() && row.status != "not present";
     });
@@ -54,7 +64,8 @@ struct BenchmarkCommand {
         std::string("planecast ") + kVersion + " on " + engine::processor_name(),
         count == 1 ? std::string("one seed; a cell is its figure")
                    : std::to_string(count) + " seeds; a cell is the median (mean, worst)"};
-    if (!plan.options.empty()) lines.push_back("`track` with " + joined(plan.options));
+    if (!plan.options.empty())
+      lines.push_back("`track` with " + CLI::detail::join(plan.options, " "));
     return lines;
   }
 };
@@ -66,19 +77,31 @@ void add_benchmark(CLI::App& app, Action& action) {
       app.add_subcommand("benchmark", "Track many sequences and print tables of the figures");
   auto options = std::make_shared<BenchmarkCommand>();
   command->add_option("config", options->config, "Configuration, YAML (see assets/benchmark)")
+      ->type_name("FILE")
       ->required();
   command
       ->add_option("-o,--output", options->options.output,
                    "Folder for runs, results.md, results.csv and plots")
+      ->type_name("DIR")
       ->required();
-  command->add_option("--cache", options->options.cache,
-                      "Folder of made sequences (default: below the output)");
-  command->add_option("--only", options->options.only, "Names of the sequences to run");
+  command
+      ->add_option("--cache", options->options.cache,
+                   "Folder of made sequences (default: below the output)")
+      ->type_name("DIR");
+  command->add_option("--only", options->options.only, "Names of the sequences to run")
+      ->type_name("NAME");
   command->add_option("--seeds", options->seeds, "Seeds 1 to N instead of the configuration's")
+      ->type_name("N")
       ->check(CLI::Range(1, 100));
   command->add_flag("--resume", options->options.resume,
                     "Keep the runs that are complete with the same arguments");
-  command->add_flag("--quiet", options->quiet, "Print results and errors alone");
+  add_json_option(*command, options->common);
+  add_console_options(*command, options->common);
+  set_examples(*command,
+               {{"planecast benchmark assets/benchmark/builtin.yaml -o out/bench --seeds 1",
+                 "Every built-in sequence once"},
+                {"planecast benchmark mine.yaml -o out/bench --only desk --resume",
+                 "One sequence of a configuration; runs that are complete are kept"}});
   command->callback([options, &action] { action = [options] { return options->run(); }; });
 }
 

@@ -5,7 +5,7 @@
 
 namespace planecast::app {
 
-inline constexpr const char* kVersion = "0.1.0";
+inline constexpr const char* kVersion = PLANECAST_VERSION;
 
 /// What the parsed command line asks for; returns the exit status.
 using Action = std::function<int()>;
@@ -20,5 +20,8 @@ void add_evaluate(CLI::App& app, Action& action);
 void add_benchmark(CLI::App& app, Action& action);
 void add_inspect(CLI::App& app, Action& action);
 void add_model(CLI::App& app, Action& action);
+void add_golden(CLI::App& app, Action& action);
+void add_calibrate(CLI::App& app, Action& action);
+void add_completion(CLI::App& app, Action& action);
 
 }  // namespace planecast::app

@@ -49,6 +49,10 @@ void Console::warning(const std::string& line) const {
   if (verbosity_ != Verbosity::kQuiet) std::fprintf(stderr, "warning: %s\n", line.c_str());
 }
 
+void Console::error(const std::string& line) const {
+  std::fprintf(stderr, "planecast: %s\n", line.c_str());
+}
+
 ProgressBar::ProgressBar(const Console& console, std::string label)
     : label_(std::move(label)),
       enabled_(console.show_progress()),

@@ -20,6 +20,7 @@ class Console {
   void info(const std::string& line) const;     ///< not when quiet
   void detail(const std::string& line) const;   ///< only when verbose
   void warning(const std::string& line) const;  ///< not when quiet
+  void error(const std::string& line) const;    ///< always; for faults that do not end the command
   bool show_progress() const { return show_progress_; }
   bool verbose() const { return verbosity_ == Verbosity::kVerbose; }
 

@@ -3,13 +3,13 @@
 #include <set>
 
 #include "app/commands.h"
+#include "app/manual.h"
 #include "app/options.h"
 #include "engine/evaluate/masks.h"
 #include "engine/evaluate/overlay.h"
 #include "engine/evaluate/planes.h"
 #include "engine/evaluate/trajectory.h"
 #include "engine/evaluate/truth.h"
-#include "engine/output/atomic_file.h"
 #include "engine/pipeline/reconstruction_io.h"
 #include "engine/sequence/groundtruth.h"
 #include "engine/user_error.h"
@@ -25,7 +25,6 @@ struct EvaluateCommand {
   std::string groundtruth;
   std::string reconstruction;
   std::string align;  ///< empty: by the reconstruction's scale; sim3 for trajectories
-  std::string json;
   bool causal = false;
 
   int trajectory() const;
@@ -59,11 +58,9 @@ int EvaluateCommand::print(const std::optional<Result>& result) const {
 
 template <typename Result>
 int EvaluateCommand::print_found(const Result& result) const {
-  const Console console = common.console();
   std::string table = engine::format_table(result);
   while (!table.empty() && table.back() == '\n') table.pop_back();
-  console.result(table);
-  if (!json.empty()) engine::write_file(json, engine::to_json(result).dump(2) + "\n");
+  common.print_result(table, engine::to_json(result));
   return kDone;
 }
 
@@ -102,15 +99,13 @@ int EvaluateCommand::masks() const {
   return print_found(engine::evaluate_masks(estimate, *truth));
 }
 
-void add_json_option(CLI::App& command, EvaluateCommand& options) {
-  command.add_option("--json", options.json, "Write the figures to this file too");
-}
-
 void add_shared_options(CLI::App& command, EvaluateCommand& options) {
   command
-      .add_option("--align", options.align, "se3 or sim3 (default: sim3, or se3 for metric maps)")
+      .add_option("--align", options.align,
+                  "Rigidly, or with a scale (default: sim3, or se3 for metric maps)")
+      ->type_name("GROUP")
       ->check(CLI::IsMember({"se3", "sim3"}));
-  add_json_option(command, options);
+  add_json_option(command, options.common);
   add_common_options(command, options.common);
 }
 
@@ -118,10 +113,15 @@ void add_masks_command(CLI::App& evaluate, std::shared_ptr<EvaluateCommand> opti
                        Action& action) {
   CLI::App* masks = evaluate.add_subcommand("masks", "Plane instance masks");
   masks->add_option("--estimate", options->estimate, "Folder with mask.txt, as `segment` writes it")
+      ->type_name("DIR")
       ->required();
-  masks->add_option("--groundtruth", options->groundtruth, "Sequence with true masks")->required();
-  add_json_option(*masks, *options);
+  masks->add_option("--groundtruth", options->groundtruth, "Sequence with true masks")
+      ->type_name("DIR")
+      ->required();
+  add_json_option(*masks, options->common);
   add_common_options(*masks, options->common);
+  set_examples(*masks, {{"planecast evaluate masks --estimate out/masks --groundtruth tabletop",
+                         "Masks of `planecast segment` against the sequence's own"}});
   masks->callback([options, &action] { action = [options] { return options->masks(); }; });
 }
 
@@ -134,12 +134,22 @@ void add_evaluate(CLI::App& app, Action& action) {
 
   CLI::App* trajectory =
       command->add_subcommand("trajectory", "Absolute and relative trajectory error");
-  trajectory->add_option("--estimate", options->estimate, "Trajectory, TUM format")->required();
+  trajectory->add_option("--estimate", options->estimate, "Trajectory, TUM format")
+      ->type_name("FILE")
+      ->required();
   trajectory
       ->add_option("--groundtruth", options->groundtruth,
                    "True poses: a file of TUM, ICL-NUIM or EuRoC, or the sequence's folder")
+      ->type_name("FILE")
       ->required();
   add_shared_options(*trajectory, *options);
+  set_examples(
+      *trajectory,
+      {{"planecast evaluate trajectory --estimate out/map/trajectory.txt --groundtruth desk",
+        "With a scale, as a monocular map has none of its own"},
+       {"planecast evaluate trajectory --estimate t.txt --groundtruth desk --align se3 "
+        "--json -",
+        "Rigidly, as JSON on standard output"}});
   trajectory->callback(
       [options, &action] { action = [options] { return options->trajectory(); }; });
 
@@ -147,11 +157,16 @@ void add_evaluate(CLI::App& app, Action& action) {
                                    int (EvaluateCommand::*run)() const) {
     CLI::App* sub = command->add_subcommand(name, what);
     sub->add_option("--reconstruction", options->reconstruction, "Reconstruction folder")
+        ->type_name("DIR")
         ->required();
     sub->add_option("--groundtruth", options->groundtruth,
                     "Synthetic sequence with groundtruth.txt and planes.json")
+        ->type_name("DIR")
         ->required();
     add_shared_options(*sub, *options);
+    set_examples(*sub, {{std::string("planecast evaluate ") + name +
+                             " --reconstruction out/map --groundtruth tabletop",
+                         "A sequence of `planecast synth` knows its truth"}});
     sub->callback(
         [options, run, &action] { action = [options, run] { return (*options.*run)(); }; });
     return sub;

@@ -4,6 +4,7 @@
 
 #include "app/commands.h"
 #include "app/inspect_window.h"
+#include "app/manual.h"
 #include "app/options.h"
 #include "engine/assets.h"
 #include "engine/inspect/screen.h"
@@ -102,16 +103,28 @@ void add_inspect(CLI::App& app, Action& action) {
       app.add_subcommand("inspect", "Look at a reconstruction and edit its scene, in a window");
   auto options = std::make_shared<InspectCommand>();
   command->add_option("reconstruction", options->reconstruction, "Reconstruction folder")
+      ->type_name("DIR")
       ->required();
-  command->add_option("--sequence", options->sequence, "The sequence it was made of, for pictures");
-  command->add_option("--scene", options->scene,
-                      "Scene file to edit (default: scene.yaml of the reconstruction)");
+  command->add_option("--sequence", options->sequence, "The sequence it was made of, for pictures")
+      ->type_name("SEQUENCE");
+  command
+      ->add_option("--scene", options->scene,
+                   "Scene file to edit (default: scene.yaml of the reconstruction)")
+      ->type_name("FILE");
   command->add_option("--frame", options->frame, "Frame to begin with")
+      ->type_name("N")
       ->check(CLI::NonNegativeNumber);
-  command->add_option("--size", options->size, "Window's size WxH")->capture_default_str();
-  command->add_option("--screenshot", options->screenshot,
-                      "Write what the window would show as PNG; needs no display");
+  command->add_option("--size", options->size, "Window's size WxH")
+      ->type_name("WxH")
+      ->capture_default_str();
+  command
+      ->add_option("--screenshot", options->screenshot,
+                   "Write what the window would show as PNG; needs no display")
+      ->type_name("FILE");
   add_common_options(*command, options->common);
+  set_examples(*command, {{"planecast inspect out/mine --sequence desk", "Frames, map and tables"},
+                          {"planecast inspect out/mine --screenshot out/mine.png",
+                           "What the window would show, without a display"}});
   command->callback([options, &action] { action = [options] { return options->run(); }; });
 }
 

@@ -2,8 +2,10 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/manual.h"
 #include "app/options.h"
 #include "engine/output/png.h"
 #include "engine/pipeline/turntable.h"
@@ -29,22 +31,49 @@ struct ModelCommand {
     if (!model.model) throw engine::UserError(file + ": " + model.error);
     for (const std::string& warning : model.warnings) console.warning(file + ": " + warning);
     describe(*model.model, console);
-    if (list) {
-      for (const std::string& line : render::describe_model(*model.model)) console.result(line);
+    std::vector<std::string> lines;
+    if (list) lines = render::describe_model(*model.model);
+    if (!output.empty()) {
+      draw(model.model);
+      lines.push_back(output);
     }
-    if (output.empty()) return kDone;
-    engine::TurntableOptions options = turntable;
-    options.animation = find_animation(*model.model);
-    options.simplify = !keep_triangles;
-    if (options.camera >= 0 && !engine::has_camera(*model.model, options.camera)) {
-      throw engine::UserError(file + ": no camera " + std::to_string(options.camera));
+    if (!lines.empty() || !common.json.empty()) {
+      common.print_result(CLI::detail::join(lines, "\n"), figures(model));
     }
-    engine::write_png(engine::draw_turntable(model.model, options), output);
-    console.result(output);
     return kDone;
   }
 
  private:
+  void draw(const std::shared_ptr<const render::Model>& model) const {
+    engine::TurntableOptions options = turntable;
+    options.animation = find_animation(*model);
+    options.simplify = !keep_triangles;
+    if (options.camera >= 0 && !engine::has_camera(*model, options.camera)) {
+      throw engine::UserError(file + ": no camera " + std::to_string(options.camera));
+    }
+    engine::write_png(engine::draw_turntable(model, options), output);
+  }
+
+  nlohmann::ordered_json figures(const render::ImportResult& imported) const {
+    const render::Model& model = *imported.model;
+    const render::Bounds bounds = render::model_bounds(model);
+    nlohmann::ordered_json json;
+    json["file"] = file;
+    json["min"] = {bounds.min.x, bounds.min.y, bounds.min.z};
+    json["max"] = {bounds.max.x, bounds.max.y, bounds.max.z};
+    json["animations"] = nlohmann::ordered_json::array();
+    const std::vector<std::string> names = render::animation_names(model);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      json["animations"].push_back(
+          {{"name", names[i]},
+           {"seconds", render::animation_duration_s(model, static_cast<int>(i))}});
+    }
+    json["contents"] = render::describe_model(model);
+    json["warnings"] = imported.warnings;
+    if (!output.empty()) json["picture"] = output;
+    return json;
+  }
+
   void describe(const render::Model& model, const Console& console) const {
     const render::Bounds bounds = render::model_bounds(model);
     char text[160];
@@ -76,31 +105,46 @@ struct ModelCommand {
 void add_model(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("model", "Describe a glTF model and draw it from around");
   auto options = std::make_shared<ModelCommand>();
-  command->add_option("file", options->file, "glTF or GLB file")->required();
-  command->add_option("-o,--output", options->output, "PNG to write");
+  command->add_option("file", options->file, "glTF or GLB file")->type_name("FILE")->required();
+  command->add_option("-o,--output", options->output, "PNG to write")->type_name("FILE");
+  add_json_option(*command, options->common);
   command->add_option("--views", options->turntable.views, "Views around the model")
+      ->type_name("N")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
   command->add_option("--view-size", options->turntable.view_size_px, "Side of a view in pixels")
+      ->type_name("N")
       ->check(CLI::Range(32, 2048))
       ->capture_default_str();
-  command->add_option("--animation", options->animation, "Name of an animation to pose it by");
+  command->add_option("--animation", options->animation, "Name of an animation to pose it by")
+      ->type_name("NAME");
   command->add_option("--time", options->turntable.time_s, "Seconds into the animation")
+      ->type_name("N")
       ->capture_default_str();
   command->add_flag("--list", options->list, "Say what the file contains");
   command
       ->add_option("--scene", options->import.scene, "Scene by number instead of the default one")
+      ->type_name("N")
       ->check(CLI::NonNegativeNumber);
-  command->add_option("--variant", options->import.variant, "Material variant by name");
+  command->add_option("--variant", options->import.variant, "Material variant by name")
+      ->type_name("NAME");
   command->add_option("--camera", options->turntable.camera, "See through the model's own camera")
+      ->type_name("N")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--elevation", options->turntable.elevation_deg, "Degrees over the horizon")
+      ->type_name("N")
       ->check(CLI::Range(-89.0, 89.0))
       ->capture_default_str();
   command->add_option("--azimuth", options->turntable.azimuth_deg, "Degrees of the first view")
+      ->type_name("N")
       ->capture_default_str();
   command->add_flag("--keep-triangles", options->keep_triangles, "Never simplify meshes");
   add_common_options(*command, options->common);
+  set_examples(*command,
+               {{"planecast model robot.glb --list", "What it contains and what is not drawn"},
+                {"planecast model robot.glb --views 8 -o robot.png", "Eight views around it"},
+                {"planecast model robot.glb --animation Walk --time 0.6 -o step.png",
+                 "A moment of an animation"}});
   command->callback([options, &action] { action = [options] { return options->run(); }; });
 }
 

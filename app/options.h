@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "app/console.h"
@@ -19,10 +20,19 @@ struct CommonOptions {
   bool no_progress = false;
   int threads = 2;
   std::uint64_t seed = 1;
+  std::string json;  ///< file for the figures; "-": standard output, instead of the text
 
   Console console() const;
+  /// The result of a command: `text` for a reader on standard output, and the figures where --json
+  /// wants them. Throws UserError where they cannot be written.
+  void print_result(const std::string& text, const nlohmann::ordered_json& figures) const;
 };
 void add_common_options(CLI::App& command, CommonOptions& options);
+/// Parts of them: how much is printed; the threads.
+void add_console_options(CLI::App& command, CommonOptions& options);
+void add_threads_option(CLI::App& command, CommonOptions& options);
+/// --json, for commands whose results a machine may read.
+void add_json_option(CLI::App& command, CommonOptions& options);
 
 /// Which frames of which sequence, seen by which camera.
 struct InputOptions {
@@ -36,11 +46,15 @@ struct InputOptions {
 };
 void add_input_options(CLI::App& command, InputOptions& options);
 
+/// --segmentation and --network.
+void add_segmentation_options(CLI::App& command, std::string& segmentation, std::string& network);
+
 /// SLAM's own options.
 struct TrackingOptions {
   std::string mode = "auto";
   std::string segmentation = "auto";
-  std::string up;  ///< x,y,z
+  std::string network;  ///< ONNX file; empty: our own
+  std::string up;       ///< x,y,z
   std::string plane_merge = "default";
   std::string plane_fit = "graph-cut";
   bool causal = false;

@@ -2,14 +2,18 @@
 
 #include <cstdio>
 
+#include "app/manual.h"
 #include "engine/scene/content.h"
 #include "engine/scene/default_scene.h"
 
 namespace planecast::app {
 
 void add_rendering_options(CLI::App& command, RenderingOptions& options) {
-  command.add_option("--scene", options.scene,
-                     "Scene file (default: a built-in model where the camera looks)");
+  const OptionGroup group(command, "Rendering");
+  command
+      .add_option("--scene", options.scene,
+                  "Scene file (default: a built-in model where the camera looks)")
+      ->type_name("FILE");
   command.add_flag("--png", options.png, "Write each frame as PNG too");
   command.add_flag("--no-video", options.no_video, "Write no video");
   command.add_flag("--debug-overlay", options.debug_overlay, "Draw plane outlines over the frames");
@@ -52,8 +56,8 @@ engine::RenderSequenceResult render_with_progress(engine::Sequence& sequence,
                                  [&bar](int done, int total) { bar.update(done, total); });
 }
 
-void report_rendering(const engine::RenderSequenceResult& result,
-                      const std::filesystem::path& folder, const Console& console) {
+RenderingReport report_rendering(const engine::RenderSequenceResult& result,
+                                 const std::filesystem::path& folder, const Console& console) {
   for (const std::string& warning : result.warnings) console.warning(warning);
   for (const int frame : result.unreadable) {
     console.warning("frame " + std::to_string(frame) +
@@ -66,7 +70,15 @@ void report_rendering(const engine::RenderSequenceResult& result,
   }
   console.info("content is in view in " + std::to_string(result.with_content) + " of " +
                std::to_string(result.frames) + " frames");
-  console.result(result.video.empty() ? folder.string() : result.video.string());
+  RenderingReport report;
+  report.place = result.video.empty() ? folder.string() : result.video.string();
+  report.figures["frames"] = result.frames;
+  report.figures["with_content"] = result.with_content;
+  report.figures["unreadable"] = result.unreadable;
+  report.figures["mean_ms"] = result.mean_ms;
+  report.figures["warnings"] = result.warnings;
+  if (!result.video.empty()) report.figures["video"] = result.video.string();
+  return report;
 }
 
 }  // namespace planecast::app

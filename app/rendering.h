@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "app/options.h"
@@ -35,8 +37,12 @@ engine::RenderSequenceOptions resolve(const RenderingOptions& rendering,
                                       const CommonOptions& common, const InputOptions& input,
                                       bool causal);
 
-/// Prints where the result is and how it went.
-void report_rendering(const engine::RenderSequenceResult& result,
-                      const std::filesystem::path& folder, const Console& console);
+/// Says on stderr how it went; the result's place and the figures are returned.
+struct RenderingReport {
+  std::string place;  ///< the video, or the folder where there is none
+  nlohmann::ordered_json figures;
+};
+RenderingReport report_rendering(const engine::RenderSequenceResult& result,
+                                 const std::filesystem::path& folder, const Console& console);
 
 }  // namespace planecast::app

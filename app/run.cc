@@ -4,9 +4,11 @@
 
 #include "app/command_line.h"
 #include "app/commands.h"
+#include "app/manual.h"
 #include "app/rendering.h"
 #include "engine/output/atomic_file.h"
 #include "engine/output/report.h"
+#include "engine/output/summary.h"
 #include "engine/pipeline/reconstruction_io.h"
 #include "engine/user_error.h"
 
@@ -89,7 +91,11 @@ int RunCommand::run() const {
                                   console);
   }
   write_report(reconstruction, result, *sequence);
-  report_rendering(result, output, console);
+  const RenderingReport rendered = report_rendering(result, output, console);
+  common.print_result(rendered.place, {{"output", output},
+                                       {"poor", tracked.poor},
+                                       {"summary", engine::summary_json(reconstruction)},
+                                       {"rendering", rendered.figures}});
   if (tracked.poor) console.warning("tracking was lost for more than half of the frames");
   return tracked.poor || !result.unreadable.empty() ? kPoorResult : kDone;
 }
@@ -97,14 +103,27 @@ int RunCommand::run() const {
 }  // namespace
 
 void add_run(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("run", "Track a sequence and render objects into it");
+  CLI::App* command =
+      app.add_subcommand("run", "Track a sequence and render objects into it: the main job");
   auto options = std::make_shared<RunCommand>();
   options->output = "out/run";
   add_input_options(*command, options->input);
-  command->add_option("-o,--output", options->output, "Folder to write")->capture_default_str();
+  command->add_option("-o,--output", options->output, "Folder to write")
+      ->type_name("DIR")
+      ->capture_default_str();
+  add_json_option(*command, options->common);
   add_rendering_options(*command, options->rendering);
   add_tracking_options(*command, options->tracking);
   add_common_options(*command, options->common);
+  set_examples(
+      *command,
+      {{"planecast run walk.mp4 -o out/walk",
+        "Track a video and put the built-in model where the camera looks"},
+       {"planecast run desk --scene scene.yaml --camera phone.yaml -o out/desk",
+        "The objects of a scene file, seen by a calibrated camera"},
+       {"planecast run desk --frames 0:200 --size 320x240 --png --no-video -o out/try",
+        "A quick try: the first 200 frames at half the size, as pictures"},
+       {"planecast run desk --scene scene.yaml -o out/desk --resume", "Go on after a killed run"}});
   command->callback([options, &action] { action = [options] { return options->run(); }; });
 }
 

@@ -1,83 +1,99 @@
-#include <cstdio>
+#include <filesystem>
 #include <memory>
-#include <opencv2/core.hpp>
+#include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/manual.h"
 #include "app/options.h"
-#include "engine/output/atomic_file.h"
-#include "engine/output/png.h"
-#include "engine/output/trajectory.h"
+#include "engine/segmentation/choose_segmenter.h"
+#include "engine/segmentation/mask_files.h"
+#include "engine/sequence/image_file.h"
 #include "engine/user_error.h"
-#include "slam/segmentation/plane_segmenter.h"
 
 namespace planecast::app {
 namespace {
-
-std::unique_ptr<slam::PlaneSegmenter> make_segmenter(const engine::Sequence& sequence,
-                                                     const std::string& wish) {
-  const bool masks = wish == "masks" || (wish == "auto" && !sequence.has_depth());
-  if (masks && sequence.has_labels()) return slam::make_mask_segmenter();
-  if (!masks && sequence.has_depth()) return slam::make_depth_segmenter(sequence.camera());
-  throw engine::UserError(sequence.path().string() + ": segmentation by " +
-                          (masks ? "masks needs mask.txt" : "depth needs depth images") +
-                          ", and there is none");
-}
 
 struct SegmentCommand {
   CommonOptions common;
   InputOptions input;
   std::string segmentation = "auto";
+  std::string network;
   std::string output;
+  bool overlay = false;
 
   int run() const {
     const Console console = common.console();
-    const std::unique_ptr<engine::Sequence> sequence = input.open();
-    const auto segmenter = make_segmenter(*sequence, segmentation);
-    const std::filesystem::path folder(output);
-    engine::make_folder(folder / "mask");
-    std::string list =
-        "# plane instance masks by " + segmenter->name() + "\n# timestamp filename\n";
-    {
-      ProgressBar bar(console, "segmenting");
-      for (int index = sequence->first_frame(); index < sequence->end_frame(); ++index) {
-        const slam::FrameInput frame = sequence->read(index);
-        char name[32];
-        std::snprintf(name, sizeof(name), "mask/%06d.png", index);
-        write_mask(*segmenter, frame, folder / name);
-        list += engine::format_timestamp(frame.timestamp) + " " + name + "\n";
-        bar.update(index + 1 - sequence->first_frame(),
-                   sequence->end_frame() - sequence->first_frame());
-      }
+    const std::filesystem::path path(input.sequence);
+    std::error_code ignored;
+    const bool one_image =
+        engine::has_image_suffix(path) && !std::filesystem::is_directory(path, ignored);
+    const engine::MaskFolder masks = one_image ? segment_image(console) : segment_sequence(console);
+    nlohmann::ordered_json figures;
+    figures["output"] = output;
+    figures["segmentation"] = masks.segmenter();
+    figures["masks"] = nlohmann::ordered_json::array();
+    for (const engine::MaskRecord& mask : masks.masks()) {
+      figures["masks"].push_back({{"frame", mask.frame},
+                                  {"timestamp", mask.timestamp},
+                                  {"file", mask.file},
+                                  {"instances", mask.instances}});
     }
-    engine::write_file(folder / "mask.txt", list);
-    console.result((folder / "mask.txt").string());
+    common.print_result(masks.finish().string(), figures);
     return kDone;
   }
 
  private:
-  /// 8 bits as long as the instances fit.
-  static void write_mask(slam::PlaneSegmenter& segmenter, const slam::FrameInput& frame,
-                         const std::filesystem::path& path) {
-    cv::Mat labels = segmenter.segment(frame);
-    if (labels.empty()) labels = cv::Mat::zeros(frame.image.size(), CV_16UC1);
-    double most = 0.0;
-    cv::minMaxLoc(labels, nullptr, &most);
-    if (most < 256.0) labels.convertTo(labels, CV_8U);
-    engine::write_png(labels, path);
+  engine::MaskFolder segment_image(const Console& console) const {
+    if (segmentation != "auto" && segmentation != "network") {
+      throw engine::UserError(input.sequence + ": --segmentation " + segmentation +
+                              " needs a sequence; an image takes network");
+    }
+    slam::FrameInput frame;
+    frame.image = engine::read_color_image(input.sequence);
+    const auto segmenter = engine::choose_network(network);
+    console.info("plane masks: " + segmenter->name());
+    engine::MaskFolder masks(output, segmenter->name(), overlay);
+    masks.add(0, 0.0, frame.image, segmenter->segment(frame));
+    return masks;
+  }
+
+  engine::MaskFolder segment_sequence(const Console& console) const {
+    const std::unique_ptr<engine::Sequence> sequence = input.open();
+    for (const std::string& warning : sequence->warnings()) console.warning(warning);
+    const auto segmenter =
+        engine::choose_segmenter({segmentation, network}, *sequence, sequence->has_depth());
+    console.info("plane masks: " + segmenter->name());
+    engine::MaskFolder masks(output, segmenter->name(), overlay);
+    ProgressBar bar(console, "segmenting");
+    for (int index = sequence->first_frame(); index < sequence->end_frame(); ++index) {
+      const slam::FrameInput frame = sequence->read(index);
+      masks.add(index, frame.timestamp, frame.image, segmenter->segment(frame));
+      bar.update(index + 1 - sequence->first_frame(),
+                 sequence->end_frame() - sequence->first_frame());
+    }
+    return masks;
   }
 };
 
 }  // namespace
 
 void add_segment(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("segment", "Plane instance masks of a sequence");
+  CLI::App* command =
+      app.add_subcommand("segment", "Plane instance masks of a sequence or an image");
   auto options = std::make_shared<SegmentCommand>();
   add_input_options(*command, options->input);
-  command->add_option("-o,--output", options->output, "Folder to write")->required();
-  command->add_option("--segmentation", options->segmentation, "auto, depth or masks")
-      ->check(CLI::IsMember({"auto", "depth", "masks"}))
-      ->capture_default_str();
+  command->add_option("-o,--output", options->output, "Folder to write")
+      ->type_name("DIR")
+      ->required();
+  add_json_option(*command, options->common);
+  add_segmentation_options(*command, options->segmentation, options->network);
+  command->add_flag("--overlay", options->overlay, "Also write the pictures with coloured planes");
   add_common_options(*command, options->common);
+  set_examples(
+      *command,
+      {{"planecast segment desk -o out/masks", "Masks from the sequence's depth"},
+       {"planecast segment desk --frames 120:121 -o out/masks", "Of one frame"},
+       {"planecast segment desk.jpg --overlay -o out/masks", "Of one picture, by the network"}});
   command->callback([options, &action] { action = [options] { return options->run(); }; });
 }
 

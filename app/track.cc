@@ -1,8 +1,11 @@
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/manual.h"
 #include "app/options.h"
 #include "engine/output/atomic_file.h"
+#include "engine/output/summary.h"
 #include "engine/pipeline/reconstruction_io.h"
 
 namespace planecast::app {
@@ -25,7 +28,9 @@ struct TrackCommand {
     engine::write_reconstruction(reconstruction, output);
     const TrackingReport report = report_tracking(reconstruction, tracking.causal);
     console.info(report.line);
-    console.result(output);
+    common.print_result(output, {{"output", output},
+                                 {"poor", report.poor},
+                                 {"summary", engine::summary_json(reconstruction)}});
     if (report.poor) console.warning("tracking was lost for more than half of the frames");
     return report.poor ? kPoorResult : kDone;
   }
@@ -37,11 +42,22 @@ void add_track(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("track", "SLAM alone: camera path, planes and points");
   auto options = std::make_shared<TrackCommand>();
   add_input_options(*command, options->input);
-  command->add_option("-o,--output", options->output, "Reconstruction folder to write")->required();
-  command->add_option("--map", options->map,
-                      "Earlier reconstruction of the place to localise in and go on from");
+  command->add_option("-o,--output", options->output, "Reconstruction folder to write")
+      ->type_name("DIR")
+      ->required();
+  add_json_option(*command, options->common);
+  command
+      ->add_option("--map", options->map,
+                   "Earlier reconstruction of the place to localise in and go on from")
+      ->type_name("DIR");
   add_tracking_options(*command, options->tracking);
   add_common_options(*command, options->common);
+  set_examples(*command,
+               {{"planecast track desk -o out/map", "Camera path, planes and points of a sequence"},
+                {"planecast track desk --mode mono --segmentation none -o out/map",
+                 "Without the depth and the masks that it has"},
+                {"planecast track again.mp4 --map out/map -o out/again",
+                 "Another recording of the same place, in the first one's world"}});
   command->callback([options, &action] { action = [options] { return options->run(); }; });
 }
 

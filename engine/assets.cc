@@ -31,6 +31,9 @@ fs::path assets_dir() {
   candidates.push_back(fs::path(PLANECAST_SOURCE_DIR) / "assets");
 #endif
   candidates.push_back("assets");
+  // A program of the user's own that is linked with the installed libraries.
+  candidates.push_back("/usr/local/share/planecast/assets");
+  candidates.push_back("/usr/share/planecast/assets");
   for (const fs::path& candidate : candidates) {
     if (fs::is_directory(candidate / "shaders", ignored)) return candidate;
   }

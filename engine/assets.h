@@ -7,8 +7,8 @@ namespace planecast::engine {
 
 /// Folder that holds models/, shaders/ and weights: PLANECAST_ASSETS from the environment, else
 /// beside the executable (../assets, ../share/planecast/assets), else the source tree it was built
-/// from, else
-/// ./assets. Throws UserError when none of them is there.
+/// from, else ./assets, else share/planecast/assets below /usr/local and /usr. Throws UserError
+/// when none of them is there.
 std::filesystem::path assets_dir();
 
 /// A file below it, by its path relative to the folder. Throws UserError when it is not there.

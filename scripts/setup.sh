@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what Planecast needs and is missing, from Debian 12's packages. Quiet when nothing is.
-# With --full also what the tests of the label `full` and the report's 3D view need.
+# Usage: scripts/setup.sh [PACKAGE...] (others instead: what some tests need)
 set -euo pipefail
 
 packages=(
@@ -14,10 +14,7 @@ packages=(
   libgtest-dev libgmock-dev
 )
 
-if [ "${1:-}" = --full ]; then
-  packages+=(chromium chromium-driver python3-selenium xvfb xdotool)
-  command -v npm >/dev/null || packages+=(nodejs npm)
-fi
+[ $# -eq 0 ] || packages=("$@")
 
 missing=()
 for package in "${packages[@]}"; do

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <set>
 
-#include "engine/output/atomic_file.h"
 #include "engine/scene/yaml_map.h"
+#include "engine/sequence/made_sequence.h"
 #include "engine/user_error.h"
 
 namespace planecast::engine {
@@ -26,13 +26,11 @@ class ConfigReader {
   BenchmarkConfig read();
 
  private:
-  YAML::Node load() const;
   std::vector<std::string> texts(YamlMap& map, const std::string& key) const;
   std::vector<std::string> choices(YamlMap& map, const std::string& key,
                                    const std::vector<std::string>& allowed) const;
   YAML::Node list(YamlMap& map, const std::string& key) const;
   std::vector<std::uint64_t> seeds(YamlMap& map) const;
-  SynthOptions synth(YamlMap map) const;
   BenchmarkSequence sequence(YamlMap map) const;
   BenchmarkVariant variant(YamlMap map) const;
   std::vector<PublishedColumn> published() const;
@@ -45,16 +43,6 @@ class ConfigReader {
   fs::path data_;
   std::vector<std::string> default_modes_;
 };
-
-YAML::Node ConfigReader::load() const {
-  const std::string text = read_file(file_);
-  try {
-    return YAML::Load(text);
-  } catch (const YAML::Exception& error) {
-    const std::string line = error.mark.is_null() ? "" : ":" + std::to_string(error.mark.line + 1);
-    throw UserError(name_ + line + ": not valid YAML: " + error.msg);
-  }
-}
 
 YAML::Node ConfigReader::list(YamlMap& map, const std::string& key) const {
   const YAML::Node node = map.node(key);
@@ -105,27 +93,6 @@ std::vector<std::uint64_t> ConfigReader::seeds(YamlMap& map) const {
   return result;
 }
 
-SynthOptions ConfigReader::synth(YamlMap map) const {
-  SynthOptions options;
-  const auto scene = map.text("scene");
-  if (!scene) map.fail("scene", "'synth' needs a scene");
-  options.name = *scene;
-  const std::vector<std::string> known = synthetic_scene_names();
-  if (std::find(known.begin(), known.end(), options.name) == known.end()) {
-    map.fail("scene", options.name + ": no such synthetic scene");
-  }
-  options.frames = map.integer("frames").value_or(options.frames);
-  options.width = map.integer("width").value_or(options.width);
-  options.height = map.integer("height").value_or(options.height);
-  options.fps = map.number("fps").value_or(options.fps);
-  options.seed = static_cast<std::uint64_t>(map.integer("seed").value_or(1));
-  options.effects = map.boolean("effects").value_or(options.effects);
-  if (const auto lens = map.choice("lens", synthetic_lens_names())) options.lens = *lens;
-  if (map.has("frames") && options.frames < 1) map.fail("frames", "'frames' must be positive");
-  map.finish();
-  return options;
-}
-
 std::string ConfigReader::unique_name(YamlMap& map, std::set<std::string>& names) const {
   const auto name = map.text("name");
   if (!name) map.fail("name", "'name' is missing");
@@ -143,7 +110,7 @@ BenchmarkSequence ConfigReader::sequence(YamlMap map) const {
   if (result.modes.empty()) result.modes = default_modes_;
   result.variants = texts(map, "variants");
   const auto path = map.text("path");
-  if (auto options = map.map("synth")) result.synth = synth(*options);
+  result.synth = read_synth_options(map);
   if (path.has_value() == result.synth.has_value()) {
     map.fail("name", "a sequence needs either 'path' or 'synth'");
   }
@@ -176,7 +143,7 @@ std::map<std::string, std::string> ConfigReader::figures(YamlMap& map,
 
 std::vector<PublishedColumn> ConfigReader::published() const {
   std::vector<PublishedColumn> columns;
-  YamlMap root(load(), name_, "the file");
+  YamlMap root(load_yaml_file(file_), name_, "the file");
   for (const YAML::Node& node : list(root, "columns")) {
     YamlMap map(node, name_, "a column");
     PublishedColumn column;
@@ -211,7 +178,7 @@ void ConfigReader::check_variant_names(const BenchmarkConfig& config) const {
 }
 
 BenchmarkConfig ConfigReader::read() {
-  YamlMap root(load(), name_, "the file");
+  YamlMap root(load_yaml_file(file_), name_, "the file");
   BenchmarkConfig config;
   config.title = root.text("title").value_or(file_.stem().string());
   config.about = root.text("about").value_or("");

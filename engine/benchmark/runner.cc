@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <nlohmann/json.hpp>
 
 #include "engine/benchmark/child_process.h"
 #include "engine/benchmark/measure.h"
 #include "engine/output/atomic_file.h"
 #include "engine/sequence/frame_options.h"
+#include "engine/sequence/made_sequence.h"
 #include "engine/user_error.h"
 #include "slam/data/byte_stream.h"
 
@@ -20,16 +20,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kRunFile = "run.json";
-
-/// A name as a folder's.
-std::string file_name(const std::string& name) {
-  std::string clean = name;
-  std::replace_if(
-      clean.begin(), clean.end(),
-      [](unsigned char c) { return std::isalnum(c) == 0 && c != '-' && c != '_' && c != '.'; },
-      '-');
-  return clean;
-}
 
 std::vector<std::string> synth_arguments(const SynthOptions& synth, const fs::path& folder) {
   std::vector<std::string> arguments = {"synth",    synth.name,
@@ -45,14 +35,6 @@ std::vector<std::string> synth_arguments(const SynthOptions& synth, const fs::pa
   if (synth.lens != "none") arguments.insert(arguments.end(), {"--lens", synth.lens});
   if (!synth.effects) arguments.emplace_back("--no-effects");
   return arguments;
-}
-
-/// The name of a made sequence tells all that it was made from.
-std::string cache_name(const SynthOptions& synth) {
-  return file_name(
-      fmt::format("{}-{}x{}-{}fps-{}-seed{}{}{}", synth.name, synth.width, synth.height, synth.fps,
-                  synth.frames > 0 ? std::to_string(synth.frames) : "all", synth.seed,
-                  synth.lens == "none" ? "" : "-" + synth.lens, synth.effects ? "" : "-clean"));
 }
 
 std::string reason_of(const ChildResult& child) {
@@ -82,7 +64,10 @@ std::string program_key() {
 
 BenchmarkRunner::BenchmarkRunner(const BenchmarkConfig& config, BenchmarkOptions options,
                                  Report report)
-    : config_(config), options_(std::move(options)), report_(std::move(report)), program_(program_key()) {
+    : config_(config),
+      options_(std::move(options)),
+      report_(std::move(report)),
+      program_(program_key()) {
   if (options_.cache.empty()) options_.cache = options_.output / "sequences";
   for (const std::string& name : options_.only) {
     const bool known = std::any_of(config_.sequences.begin(), config_.sequences.end(),
@@ -92,7 +77,7 @@ BenchmarkRunner::BenchmarkRunner(const BenchmarkConfig& config, BenchmarkOptions
 }
 
 fs::path BenchmarkRunner::folder_of(const BenchmarkSequence& sequence) const {
-  return sequence.synth ? options_.cache / cache_name(*sequence.synth) : sequence.path;
+  return sequence.synth ? options_.cache / made_sequence_name(*sequence.synth) : sequence.path;
 }
 
 bool BenchmarkRunner::is_present(const BenchmarkSequence& sequence) const {
@@ -104,7 +89,7 @@ BenchmarkRun BenchmarkRunner::make_run(const BenchmarkSequence& sequence, const 
                                        const BenchmarkVariant& variant, std::uint64_t seed) const {
   BenchmarkRun run{&sequence, &variant, mode, seed, {}, {}};
   run.folder = options_.output / "runs" /
-               file_name(fmt::format("{}_{}_{}_{}", sequence.name, mode, variant.name, seed));
+               folder_name(fmt::format("{}_{}_{}_{}", sequence.name, mode, variant.name, seed));
   run.arguments = {
       "track",  folder_of(sequence).string(), "-o",           run.folder.string(), "--mode", mode,
       "--seed", std::to_string(seed),         "--no-progress"};
@@ -145,7 +130,7 @@ std::string BenchmarkRunner::make_sequence(const BenchmarkSequence& sequence) {
   make_folder(folder);
   const ChildResult child =
       run_this_executable(synth_arguments(*sequence.synth, folder),
-                          options_.cache / (cache_name(*sequence.synth) + ".log"));
+                          options_.cache / (made_sequence_name(*sequence.synth) + ".log"));
   return child.exit_status == 0 ? "" : "failed: synth: " + reason_of(child);
 }
 

@@ -10,6 +10,9 @@ namespace planecast::engine {
 /// compression level is fast rather than small: frames are many. Throws UserError.
 void write_png(const cv::Mat& image, const std::filesystem::path& path, int compression = 3);
 
+/// "data:image/png;base64,..." of an 8-bit image, lossless.
+std::string png_data_uri(const cv::Mat& image);
+
 /// "data:image/jpeg;base64,..." of an 8-bit image, for self-contained HTML.
 std::string jpeg_data_uri(const cv::Mat& image, int quality = 85);
 

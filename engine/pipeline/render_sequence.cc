@@ -1,5 +1,7 @@
 #include "engine/pipeline/render_sequence.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -19,6 +21,15 @@
 
 namespace planecast::engine {
 namespace {
+
+void check_size(const Sequence& sequence, const Reconstruction& reconstruction) {
+  const slam::Camera& frames = sequence.camera();
+  const slam::Camera& map = reconstruction.camera;
+  if (frames.width == map.width && frames.height == map.height) return;
+  throw UserError(fmt::format("{}: frames of {}x{} do not fit the reconstruction's {}x{}",
+                              sequence.path().string(), frames.width, frames.height, map.width,
+                              map.height));
+}
 
 class SequenceRenderer {
  public:
@@ -40,6 +51,7 @@ class SequenceRenderer {
   }
 
   RenderSequenceResult run(const Progress& progress);
+  RenderSequenceResult draw(const std::vector<int>& frames);
 
  private:
   PainterOptions painter_options() const {
@@ -184,13 +196,29 @@ RenderSequenceResult SequenceRenderer::run(const Progress& progress) {
   return std::move(result_);
 }
 
+RenderSequenceResult SequenceRenderer::draw(const std::vector<int>& frames) {
+  for (const int index : frames) {
+    result_.stills.emplace_back(index, picture_of({index, sequence_.read(index), ""}));
+    ++result_.frames;
+  }
+  return std::move(result_);
+}
+
 }  // namespace
 
 RenderSequenceResult render_sequence(Sequence& sequence, const Reconstruction& reconstruction,
                                      const SceneFile& scene, const RenderSequenceOptions& options,
                                      const std::filesystem::path& folder,
                                      const Progress& progress) {
+  check_size(sequence, reconstruction);
   return SequenceRenderer(sequence, reconstruction, scene, options, folder).run(progress);
+}
+
+RenderSequenceResult draw_frames(Sequence& sequence, const Reconstruction& reconstruction,
+                                 const SceneFile& scene, const RenderSequenceOptions& options,
+                                 const std::vector<int>& frames) {
+  check_size(sequence, reconstruction);
+  return SequenceRenderer(sequence, reconstruction, scene, options, {}).draw(frames);
 }
 
 }  // namespace planecast::engine

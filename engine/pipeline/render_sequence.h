@@ -47,4 +47,10 @@ RenderSequenceResult render_sequence(Sequence& sequence, const Reconstruction& r
                                      const SceneFile& scene, const RenderSequenceOptions& options,
                                      const std::filesystem::path& folder, const Progress& progress);
 
+/// Draws the scene over single frames of the sequence, given by their numbers, into `stills`;
+/// nothing is written. Each picture is the same as in the video before it is encoded.
+RenderSequenceResult draw_frames(Sequence& sequence, const Reconstruction& reconstruction,
+                                 const SceneFile& scene, const RenderSequenceOptions& options,
+                                 const std::vector<int>& frames);
+
 }  // namespace planecast::engine

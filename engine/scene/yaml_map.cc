@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/output/atomic_file.h"
 #include "engine/user_error.h"
 
 namespace planecast::engine {
@@ -18,6 +19,16 @@ std::optional<double> to_number(const YAML::Node& node) {
 }
 
 }  // namespace
+
+YAML::Node load_yaml_file(const std::filesystem::path& file) {
+  const std::string text = read_file(file);
+  try {
+    return YAML::Load(text);
+  } catch (const YAML::Exception& error) {
+    const std::string line = error.mark.is_null() ? "" : ":" + std::to_string(error.mark.line + 1);
+    throw UserError(file.string() + line + ": not valid YAML: " + error.msg);
+  }
+}
 
 std::string yaml_location(const std::string& file, const YAML::Node& node) {
   const YAML::Mark mark = node.Mark();

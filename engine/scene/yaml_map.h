@@ -2,6 +2,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <filesystem>
 #include <optional>
 #include <set>
 #include <string>
@@ -45,6 +46,9 @@ class YamlMap {
   std::string what_;
   std::set<std::string> known_;
 };
+
+/// The root of a YAML file. Throws UserError naming the file, and the line of a mistake.
+YAML::Node load_yaml_file(const std::filesystem::path& file);
 
 /// "file:LINE".
 std::string yaml_location(const std::string& file, const YAML::Node& node);

@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 
+#include "engine/output/atomic_file.h"
 #include "engine/user_error.h"
 
 namespace planecast::engine {
@@ -293,22 +294,24 @@ slam::Pose read_body_from_cam(const fs::path& file) {
   }
 }
 
-void write_camera_file(const fs::path& file, const CameraSettings& settings) {
+void write_camera_file(const fs::path& file, const CameraSettings& settings,
+                       const std::string& comment) {
   const slam::Camera& camera = settings.camera;
-  std::ofstream out(file);
+  std::string text;
+  std::istringstream lines(comment);
+  for (std::string line; std::getline(lines, line);) text += "# " + line + "\n";
   const bool fisheye = camera.lens == slam::LensModel::kFisheye;
-  out << "model: " << (fisheye ? "fisheye" : "pinhole") << '\n'
-      << fmt::format("width: {}\nheight: {}\n", camera.width, camera.height)
-      << fmt::format("fx: {}\nfy: {}\ncx: {}\ncy: {}\n", camera.fx, camera.fy, camera.cx,
-                     camera.cy);
+  text += fmt::format("model: {}\nwidth: {}\nheight: {}\n", fisheye ? "fisheye" : "pinhole",
+                      camera.width, camera.height);
+  text +=
+      fmt::format("fx: {}\nfy: {}\ncx: {}\ncy: {}\n", camera.fx, camera.fy, camera.cx, camera.cy);
   if (camera.has_distortion()) {
     const auto end = camera.distortion.begin() + (fisheye ? 4 : 5);
-    out << fmt::format("distortion: [{}]\n", fmt::join(camera.distortion.begin(), end, ", "));
+    text += fmt::format("distortion: [{}]\n", fmt::join(camera.distortion.begin(), end, ", "));
   }
-  if (settings.fps) out << fmt::format("fps: {}\n", *settings.fps);
-  out << fmt::format("depth_factor: {}\n", settings.depth_factor);
-  out.close();
-  if (!out) fail(file, "cannot be written");
+  if (settings.fps) text += fmt::format("fps: {}\n", *settings.fps);
+  text += fmt::format("depth_factor: {}\n", settings.depth_factor);
+  write_file(file, text);
 }
 
 slam::Camera fit_camera_to_images(const slam::Camera& camera, int width, int height,

@@ -31,8 +31,10 @@ CameraSettings read_camera_file(const std::filesystem::path& file);
 /// EuRoC's T_BS of a sensor.yaml: the camera's pose in the body's frame. Throws UserError.
 slam::Pose read_body_from_cam(const std::filesystem::path& file);
 
-/// Writes model, width, height, fx, fy, cx, cy, distortion, fps, depth_factor as YAML.
-void write_camera_file(const std::filesystem::path& file, const CameraSettings& settings);
+/// Writes model, width, height, fx, fy, cx, cy, distortion, fps, depth_factor as YAML, below a
+/// comment of any number of lines. Throws UserError where it cannot be written.
+void write_camera_file(const std::filesystem::path& file, const CameraSettings& settings,
+                       const std::string& comment = "");
 
 /// The camera for images of the given size: scaled where only the size differs. Throws UserError
 /// when the shape differs, since then the intrinsics cannot belong to these images.

@@ -2,7 +2,7 @@
 """The inspector's window under Xvfb, with real clicks and keys.
 
 Usage: inspect_window_test.py PLANECAST WORK_FOLDER [unittest arguments]
-Needs xvfb and xdotool (scripts/setup.sh --full).
+Needs xvfb and xdotool (scripts/test_full.sh installs them).
 """
 
 import os
@@ -15,7 +15,7 @@ import unittest
 from cli import PLANECAST, ROOT, WORK, empty_work_folder, planecast
 
 if not shutil.which("Xvfb") or not shutil.which("xdotool"):
-    print("Xvfb or xdotool is not installed (scripts/setup.sh --full)")
+    print("Xvfb or xdotool is not installed (scripts/test_full.sh installs them)")
     sys.exit(77)
 
 TABLETOP = WORK / "tabletop"

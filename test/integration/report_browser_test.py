@@ -2,7 +2,7 @@
 """report.html of a run in headless Chromium, with real clicks, on a desk and on a phone.
 
 Usage: report_browser_test.py PLANECAST WORK_FOLDER [unittest arguments]
-Needs chromium-driver and python3-selenium (scripts/setup.sh --full).
+Needs chromium-driver and python3-selenium (scripts/test_full.sh installs them).
 """
 
 import json
@@ -15,7 +15,7 @@ import unittest
 from cli import WORK, empty_work_folder, planecast
 
 if not shutil.which("chromedriver"):
-    print("chromedriver is not installed (scripts/setup.sh --full)")
+    print("chromedriver is not installed (scripts/test_full.sh installs them)")
     sys.exit(77)
 
 from selenium import webdriver

@@ -1,0 +1,18 @@
+# What the libraries are linked with; installed, so that find_package(planecast) finds the same.
+find_package(Eigen3 REQUIRED NO_MODULE)
+find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs features2d calib3d video videoio dnn
+             aruco ximgproc)
+find_package(Ceres REQUIRED)
+find_package(flann REQUIRED)
+find_package(glm REQUIRED)
+find_package(TinyGLTF REQUIRED)
+find_package(draco REQUIRED)
+find_package(meshoptimizer REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(yaml-cpp REQUIRED)
+find_package(Threads REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(IMAGES REQUIRED IMPORTED_TARGET libwebp stb)
+pkg_check_modules(IMGUI REQUIRED IMPORTED_TARGET imgui)
+pkg_check_modules(LIBAV REQUIRED IMPORTED_TARGET libavformat libavcodec libavutil libswscale)
