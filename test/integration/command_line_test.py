@@ -202,7 +202,7 @@ class Errors(unittest.TestCase):
             (("benchmark", "nowhere.yaml", "-o", WORK / "x"), ["nowhere.yaml"]),
             (("evaluate", "planes", "--reconstruction", WORK, "--groundtruth", SEQUENCE), [str(WORK)]),
             (("synth", "--list", "--json", WORK / "no" / "folder.json"), ["folder.json"]),
-            (("calibrate", SEQUENCE, "--squares", "10x7"), [str(SEQUENCE), "0 frames"]),
+            (("calibrate", SEQUENCE, "--squares", "10x7", "--no-progress"), [str(SEQUENCE), "0 frames"]),
         ):
             with self.subTest(arguments=arguments):
                 self.refuse(*arguments, words=words)
