@@ -18,6 +18,7 @@ void add_synth(CLI::App& app, Action& action);
 void add_segment(CLI::App& app, Action& action);
 void add_evaluate(CLI::App& app, Action& action);
 void add_benchmark(CLI::App& app, Action& action);
+void add_inspect(CLI::App& app, Action& action);
 void add_model(CLI::App& app, Action& action);
 void add_golden(CLI::App& app, Action& action);
 void add_calibrate(CLI::App& app, Action& action);

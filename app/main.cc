@@ -66,6 +66,7 @@ void add_commands(CLI::App& cli, app::Action& action) {
   app::add_model(cli, action);
   app::add_evaluate(cli, action);
   app::add_benchmark(cli, action);
+  app::add_inspect(cli, action);
   app::add_golden(cli, action);
   app::add_completion(cli, action);
 }

@@ -5,6 +5,7 @@
 
 #include "app/manual.h"
 #include "engine/output/atomic_file.h"
+#include "engine/segmentation/choose_segmenter.h"
 #include "engine/sequence/frame_options.h"
 #include "engine/user_error.h"
 
@@ -96,6 +97,15 @@ std::unique_ptr<engine::Sequence> InputOptions::open() const {
   return engine::open_sequence(sequence, result);
 }
 
+void add_segmentation_options(CLI::App& command, std::string& segmentation, std::string& network) {
+  command.add_option("--segmentation", segmentation, "Where plane masks come from")
+      ->type_name("HOW")
+      ->check(CLI::IsMember(engine::segmentation_kinds()))
+      ->capture_default_str();
+  command.add_option("--network", network,
+                     "ONNX file for the masks, its description beside it (default: our own)");
+}
+
 void add_tracking_options(CLI::App& command, TrackingOptions& options) {
   const OptionGroup group(command, "Tracking and mapping");
   command
@@ -104,10 +114,7 @@ void add_tracking_options(CLI::App& command, TrackingOptions& options) {
       ->type_name("MODE")
       ->check(CLI::IsMember({"mono", "rgbd", "auto"}))
       ->capture_default_str();
-  command.add_option("--segmentation", options.segmentation, "Where plane masks come from")
-      ->type_name("HOW")
-      ->check(CLI::IsMember({"auto", "masks", "depth", "none"}))
-      ->capture_default_str();
+  add_segmentation_options(command, options.segmentation, options.network);
   command.add_flag("--causal", options.causal,
                    "Each frame as it was known at its time (default: two passes)");
   command.add_flag("--no-loop-closing", options.no_loop_closing,
@@ -135,6 +142,7 @@ engine::TrackSequenceOptions TrackingOptions::resolve(const CommonOptions& commo
   engine::TrackSequenceOptions result;
   result.mode = mode;
   result.segmentation = segmentation;
+  result.network = network;
   result.causal = causal;
   result.close_loops = !no_loop_closing;
   result.threads = common.threads;
@@ -153,8 +161,11 @@ engine::Reconstruction track_with_progress(engine::Sequence& sequence,
                                            const Console& console) {
   for (const std::string& warning : sequence.warnings()) console.warning(warning);
   ProgressBar bar(console, "tracking");
-  return engine::track_sequence(sequence, options,
-                                [&bar](int done, int total) { bar.update(done, total); });
+  engine::Reconstruction reconstruction = engine::track_sequence(
+      sequence, options, [&bar](int done, int total) { bar.update(done, total); });
+  bar.finish();
+  console.info("plane masks: " + reconstruction.segmentation);
+  return reconstruction;
 }
 
 TrackingReport report_tracking(const engine::Reconstruction& reconstruction, bool causal) {

@@ -46,11 +46,15 @@ struct InputOptions {
 };
 void add_input_options(CLI::App& command, InputOptions& options);
 
+/// --segmentation and --network.
+void add_segmentation_options(CLI::App& command, std::string& segmentation, std::string& network);
+
 /// SLAM's own options.
 struct TrackingOptions {
   std::string mode = "auto";
   std::string segmentation = "auto";
-  std::string up;  ///< x,y,z
+  std::string network;  ///< ONNX file; empty: our own
+  std::string up;       ///< x,y,z
   std::string plane_merge = "default";
   std::string plane_fit = "graph-cut";
   bool causal = false;

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "app/command_line.h"
 #include "app/commands.h"
 #include "app/manual.h"
 #include "app/rendering.h"
@@ -50,6 +51,12 @@ void RunCommand::write_report(const engine::Reconstruction& reconstruction,
                               const engine::Sequence& sequence) const {
   engine::ReportInput report;
   report.title = sequence.name();
+  report.command = command_line();
+  report.versions = versions(result.renderer);
+  report.video = result.video;
+  report.fps = sequence.fps();
+  report.objects = result.objects;
+  report.render_times = result.frame_times;
   for (const auto& [frame, picture] : result.stills) {
     report.stills.push_back({"frame " + std::to_string(frame), picture});
   }

@@ -81,6 +81,9 @@ class System {
          std::unique_ptr<PlaneSegmenter> segmenter);
   ~System();
 
+  /// Name and version of what gives the plane masks.
+  std::string segmentation() const { return mapper_.segmentation(); }
+
   /// Starts from an earlier map of the same camera instead of an empty one: the first frames are
   /// relocalised in it and mapping goes on from there. Before the first frame.
   void load(Map map);

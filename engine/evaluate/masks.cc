@@ -69,6 +69,33 @@ MaskScore score_masks(const cv::Mat& estimate, const cv::Mat& truth, const MaskO
   return score;
 }
 
+void MaskSums::add_without_estimate(const MaskScore& score) {
+  ++sums_.frames;
+  ++sums_.without_estimate;
+  sums_.truth += score.truth;
+}
+
+void MaskSums::add(const MaskScore& score) {
+  ++sums_.frames;
+  sums_.truth += score.truth;
+  sums_.estimated += score.estimated;
+  sums_.found += score.found;
+  sums_.rand_index += score.partition.rand_index;
+  sums_.variation_of_information += score.partition.variation_of_information;
+  sums_.segmentation_covering += score.partition.segmentation_covering;
+}
+
+MaskResult MaskSums::result() const {
+  MaskResult result = sums_;
+  const int both = result.frames - result.without_estimate;
+  result.recall = mean(result.found, result.truth);
+  result.precision = mean(result.found, result.estimated);
+  result.rand_index = mean(result.rand_index, both);
+  result.variation_of_information = mean(result.variation_of_information, both);
+  result.segmentation_covering = mean(result.segmentation_covering, both);
+  return result;
+}
+
 MaskResult evaluate_masks(const std::filesystem::path& masks, Sequence& truth,
                           const MaskOptions& options) {
   if (!truth.has_labels()) throw UserError(truth.path().string() + ": has no true masks");
@@ -83,11 +110,10 @@ MaskResult evaluate_masks(const std::filesystem::path& masks, Sequence& truth,
     frame_times.push_back(truth.timestamp(i));
   }
   const std::vector<int> partner = pair_by_time(frame_times, times);
-  MaskResult result;
+  MaskSums sums;
   for (int i = truth.first_frame(); i < truth.end_frame(); ++i) {
     const cv::Mat true_labels = truth.read(i).labels;
     if (true_labels.empty()) continue;
-    ++result.frames;
     const int file = partner[static_cast<std::size_t>(i - truth.first_frame())];
     cv::Mat labels = cv::Mat::zeros(true_labels.size(), CV_16U);
     if (file >= 0) {
@@ -97,27 +123,13 @@ MaskResult evaluate_masks(const std::filesystem::path& masks, Sequence& truth,
       }
     }
     const MaskScore score = score_masks(labels, true_labels, options);
-    result.truth += score.truth;
-    result.estimated += score.estimated;
-    result.found += score.found;
-    if (file < 0) {
-      ++result.without_estimate;
-      continue;
-    }
-    result.rand_index += score.partition.rand_index;
-    result.variation_of_information += score.partition.variation_of_information;
-    result.segmentation_covering += score.partition.segmentation_covering;
+    file < 0 ? sums.add_without_estimate(score) : sums.add(score);
   }
-  const int both = result.frames - result.without_estimate;
-  if (both == 0) {
+  const MaskResult result = sums.result();
+  if (result.frames == result.without_estimate) {
     throw UserError(masks.string() + ": no mask is within 20 ms of a frame of " +
                     truth.path().string());
   }
-  result.recall = mean(result.found, result.truth);
-  result.precision = mean(result.found, result.estimated);
-  result.rand_index = mean(result.rand_index, both);
-  result.variation_of_information = mean(result.variation_of_information, both);
-  result.segmentation_covering = mean(result.segmentation_covering, both);
   return result;
 }
 

@@ -40,6 +40,18 @@ struct MaskResult {
   double segmentation_covering = 0.0;
 };
 
+/// Adds up frames.
+class MaskSums {
+ public:
+  void add(const MaskScore& score);
+  /// A frame without an estimated mask: nothing is found, and the partitions are not compared.
+  void add_without_estimate(const MaskScore& score);
+  MaskResult result() const;
+
+ private:
+  MaskResult sums_;
+};
+
 /// `masks`: a folder with mask.txt (as `segment` writes it) or a sequence that has one. Its times
 /// are paired with the true sequence's frames within 20 ms; a mask of another size is resized.
 /// Throws UserError where either has no masks or no frame has both.

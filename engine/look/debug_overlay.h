@@ -2,13 +2,23 @@
 
 #include <opencv2/core.hpp>
 
+#include "engine/gui/gui_canvas.h"
 #include "engine/pipeline/reconstruction.h"
 
 namespace planecast::engine {
 
 /// Draws the planes' outlines in their colours with ids and classes, and one line with the frame's
-/// number and state. Outlines follow the lens.
-void draw_debug_overlay(const Reconstruction& reconstruction, const FrameRecord& frame, bool causal,
-                        cv::Mat& picture);
+/// number and state, as the inspector does. Outlines follow the lens.
+class DebugOverlay {
+ public:
+  explicit DebugOverlay(const Reconstruction& reconstruction);
+
+  /// `picture` is CV_8UC3 BGR of the camera's size.
+  void draw(const FrameRecord& frame, bool causal, cv::Mat& picture);
+
+ private:
+  const Reconstruction& reconstruction_;
+  GuiCanvas canvas_;
+};
 
 }  // namespace planecast::engine

@@ -3,146 +3,131 @@
 #include <fmt/format.h>
 
 #include <opencv2/imgproc.hpp>
+#include <system_error>
 
 #include "engine/output/atomic_file.h"
+#include "engine/output/base64.h"
 #include "engine/output/png.h"
+#include "engine/output/report_charts.h"
+#include "engine/output/report_data.h"
+#include "engine/output/report_page.h"
+#include "engine/output/report_sections.h"
 #include "engine/output/report_svg.h"
-#include "engine/output/summary.h"
-#include "engine/output/tables.h"
 
 namespace planecast::engine {
 namespace {
 
 constexpr int kMaxStillWidth = 960;
-constexpr const char* kStyle =
-    "body{font:16px/1.45 system-ui,sans-serif;margin:0 "
-    "auto;max-width:60rem;padding:1rem;color:#222;"
-    "background:#fff}h1{font-size:1.5rem}h2{font-size:1.15rem;margin-top:2rem;border-bottom:1px "
-    "solid "
-    "#ddd}table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums}"
-    "th,td{padding:.3rem .5rem;text-align:right;border-bottom:1px solid #eee}"
-    "th:first-child,td:first-child{text-align:left}.scroll{overflow-x:auto}"
-    "img,svg{width:100%;height:auto;background:#fafafa}figure{margin:0 0 1rem}"
-    "figcaption{font-size:.9rem;color:#555}.warning{background:#fff3cd;padding:.5rem "
-    ".75rem;margin:.4rem "
-    "0}.swatch{display:inline-block;width:.8em;height:.8em;margin-right:.4em}";
+/// Nothing may be loaded from outside, by the browser's own guard.
+constexpr const char* kPolicy =
+    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; "
+    "img-src data: blob:; media-src blob:";
 
-std::string row(const std::string& name, const std::string& value) {
-  return fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", escape_html(name), escape_html(value));
-}
-
-std::string share_text(int part, int whole) {
-  const double percent = whole > 0 ? 100.0 * part / whole : 0.0;
-  return fmt::format("{} of {} ({:.1f} %)", part, whole, percent);
-}
-
-std::string summary_html(const Reconstruction& reconstruction, const ReportInput& input) {
-  const Summary s = summarise(reconstruction);
-  const char* unit = reconstruction.metric ? "m" : "map units";
-  std::string html = "<table>\n";
-  for (const auto& [name, value] : input.facts) html += row(name, value);
-  html += row("Mode", reconstruction.mode);
-  html += row("Segmentation", reconstruction.segmentation);
-  html += row("Frames with a final pose", share_text(s.localised, s.frames));
-  html += row("Frames tracked as they came", share_text(s.tracked, s.frames));
-  html += row("Frames until initialised", fmt::format("{}", s.frames_until_initialised));
-  if (s.unreadable > 0) html += row("Unreadable frames", fmt::format("{}", s.unreadable));
-  html += row("Keyframes", fmt::format("{}", s.keyframes));
-  html +=
-      row("Map points, of these on planes", fmt::format("{}, {}", s.points, s.points_on_planes));
-  html += row("Planes", fmt::format("{}", s.planes));
-  html += row("Length of the camera's path", fmt::format("{:.3f} {}", s.path_length, unit));
-  return html + "</table>\n";
-}
-
-std::string warnings_html(const Reconstruction& reconstruction, const ReportInput& input) {
-  std::string html;
-  for (const auto* warnings : {&reconstruction.warnings, &input.warnings}) {
-    for (const std::string& warning : *warnings) {
-      html += fmt::format("<p class=\"warning\">{}</p>\n", escape_html(warning));
-    }
+std::string still_uri(const ReportStill& still) {
+  cv::Mat image = still.bgr;
+  if (image.cols > kMaxStillWidth) {
+    const double scale = static_cast<double>(kMaxStillWidth) / image.cols;
+    cv::resize(still.bgr, image, cv::Size(), scale, scale, cv::INTER_AREA);
   }
-  return html;
+  return jpeg_data_uri(image);
 }
 
-std::string links_html(const ReportInput& input) {
-  std::string html;
-  for (const std::string& link : input.links) {
-    html += fmt::format("{}<a href=\"{}\">{}</a>", html.empty() ? "<p>" : " &middot; ",
-                        escape_html(link), escape_html(link));
-  }
-  return html.empty() ? html : html + "</p>\n";
+/// A video small enough to be carried by the page.
+bool embeds_video(const ReportInput& input) {
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(input.video, error);
+  return !error && bytes <= input.max_video_bytes;
+}
+
+std::string video_html(const ReportInput& input) {
+  const std::size_t middle = input.stills.size() / 2;
+  const bool has_poster = !input.stills.empty() && !input.stills[middle].bgr.empty();
+  const std::string poster =
+      has_poster ? fmt::format(" poster=\"{}\"", still_uri(input.stills[middle])) : "";
+  return fmt::format(
+      "<video id=\"video\" controls playsinline muted loop{}></video>\n"
+      "<script type=\"text/plain\" id=\"video-data\">{}</script>\n",
+      poster, base64(read_file(input.video)));
 }
 
 std::string stills_html(const ReportInput& input) {
   std::string html;
   for (const ReportStill& still : input.stills) {
     if (still.bgr.empty()) continue;
-    cv::Mat image = still.bgr;
-    if (image.cols > kMaxStillWidth) {
-      const double scale = static_cast<double>(kMaxStillWidth) / image.cols;
-      cv::resize(still.bgr, image, cv::Size(), scale, scale, cv::INTER_AREA);
-    }
     html +=
         fmt::format("<figure><img alt=\"{0}\" src=\"{1}\"><figcaption>{0}</figcaption></figure>\n",
-                    escape_html(still.caption), jpeg_data_uri(image));
+                    escape_html(still.caption), still_uri(still));
+  }
+  return html.empty() ? html : "<div class=\"stills\">\n" + html + "</div>\n";
+}
+
+/// One scrubber for the video, the map and the charts.
+std::string scrubber_html(const Reconstruction& reconstruction) {
+  if (reconstruction.frames.empty()) return "";
+  return fmt::format(
+      "<div class=\"scrubber\" hidden><label for=\"frame\">Frame</label>"
+      "<input type=\"range\" id=\"frame\" min=\"0\" max=\"{}\" value=\"0\" step=\"1\">"
+      "<output id=\"readout\" for=\"frame\"></output></div>\n",
+      reconstruction.frames.size() - 1);
+}
+
+std::string map_html(const Reconstruction& reconstruction) {
+  return "<div id=\"map\" class=\"map\">" + top_view_svg(reconstruction) +
+         "<p class=\"note\">The map from above.</p></div>\n";
+}
+
+std::string section(const char* id, const char* heading, const std::string& content) {
+  if (content.empty()) return "";
+  return fmt::format(
+      "<section id=\"{0}\" aria-labelledby=\"h-{0}\"><h2 id=\"h-{0}\">{1}</h2>\n{2}"
+      "</section>\n",
+      id, heading, content);
+}
+
+std::string head_html(const std::string& title, const std::string& style) {
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"{0}\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n"
+      "<meta name=\"color-scheme\" content=\"light dark\">\n<title>{1}</title>\n"
+      "<style>\n{2}</style></head>\n",
+      kPolicy, title, style);
+}
+
+std::string scripts_html(const PageFiles& files, const std::string& data) {
+  std::string html =
+      fmt::format("<script type=\"application/json\" id=\"data\">{}</script>\n", script_json(data));
+  for (const std::string* code : {&files.map_view, &files.script}) {
+    if (!code->empty()) html += "<script>\n" + script_text(*code) + "</script>\n";
   }
   return html;
-}
-
-std::string planes_html(const Reconstruction& reconstruction) {
-  std::string html = fmt::format(
-      "<div class=\"scroll\"><table>\n<tr><th>Plane</th><th>Class</th><th>Points</th><th>RMS</th>"
-      "<th>Area</th><th>Normal</th><th>Offset</th><th>First frame</th><th>Merged</th></tr>\n");
-  for (const PlaneRecord& plane : reconstruction.planes) {
-    html += fmt::format(
-        "<tr><td><span class=\"swatch\" "
-        "style=\"background:{}\"></span>{}</td><td>{}</td><td>{}</td>"
-        "<td>{:.4f}</td><td>{:.2f}</td><td>{:.2f} {:.2f} {:.2f}</td><td>{:.3f}</td><td>{}</td>"
-        "<td>{}</td></tr>\n",
-        plane_color_css(plane.id), plane.id, escape_html(plane.plane_class), plane.inliers,
-        plane.rms, plane.area, plane.normal.x(), plane.normal.y(), plane.normal.z(), plane.offset,
-        plane.first_frame, fmt::join(plane.merged_from, " "));
-  }
-  return html + "</table></div>\n";
-}
-
-std::string timings_html(const Reconstruction& reconstruction) {
-  std::string html =
-      "<div class=\"scroll\"><table>\n<tr><th>Stage</th><th>Times run</th><th>Mean ms</th>"
-      "<th>Median ms</th><th>95 % ms</th></tr>\n";
-  for (const TimingRow& timing : timing_rows(reconstruction)) {
-    if (timing.ms.count == 0) continue;
-    html += fmt::format(
-        "<tr><td>{}</td><td>{}</td><td>{:.2f}</td><td>{:.2f}</td><td>{:.2f}</td></tr>\n",
-        escape_html(timing.name), timing.ms.count, timing.ms.mean, timing.ms.median, timing.ms.p95);
-  }
-  return html + "</table></div>\n";
-}
-
-std::string section(const std::string& heading, const std::string& content) {
-  return content.empty() ? "" : fmt::format("<h2>{}</h2>\n{}", heading, content);
 }
 
 }  // namespace
 
 void write_report(const Reconstruction& reconstruction, const ReportInput& input,
                   const std::filesystem::path& path) {
+  const PageFiles files = read_page_files();
   const std::string title = escape_html(input.title);
-  std::string html = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width,initial-scale=1\">\n<title>{0}</title>\n<style>{1}</style></"
-      "head>\n"
-      "<body>\n<h1>{0}</h1>\n",
-      title, kStyle);
+  std::string html = head_html(title, files.style);
+  html += fmt::format("<body>\n<header><p class=\"brand\">Planecast</p><h1>{}</h1>\n", title);
+  html += key_figures_html(reconstruction, input) + "</header>\n<main>\n";
   html += warnings_html(reconstruction, input);
-  html += links_html(input);
-  html += section("Summary", summary_html(reconstruction, input));
-  html += section("Stills", stills_html(input));
-  html += section("Map from above", top_view_svg(reconstruction));
-  html += section("Inliers by frame (red: no pose)", inlier_chart_svg(reconstruction));
-  html += section("Planes", planes_html(reconstruction));
-  html += section("Timings", timings_html(reconstruction));
+  html +=
+      section("picture", "Result", embeds_video(input) ? video_html(input) : stills_html(input));
+  html += scrubber_html(reconstruction);
+  html += section("space", "Map", map_html(reconstruction));
+  html += section("tracking", "Inliers and state",
+                  inlier_chart_html(reconstruction) + state_legend_html(reconstruction));
+  html += section("planes", "Planes", planes_html(reconstruction));
+  html += section("summary", "Summary", summary_html(reconstruction, input));
+  html += section("reproduce", "Command and versions", reproduce_html(input));
+  html += fmt::format(
+      "{}\n{}{}\n", kTimesBegin,
+      section("times", "Time of computing",
+              times_chart_html(reconstruction, input.render_times) + timings_html(reconstruction)),
+      kTimesEnd);
+  html += "</main>\n" + scripts_html(files, report_data_json(reconstruction, input));
   write_file(path, html + "</body></html>\n");
 }
 

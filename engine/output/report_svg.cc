@@ -12,44 +12,9 @@
 namespace planecast::engine {
 namespace {
 
-constexpr int kChartWidth = 800;
-constexpr int kChartHeight = 200;
-constexpr int kChartLeft = 44;  ///< room for the axis' numbers
-constexpr int kChartBottom = 24;
 constexpr int kTopViewSide = 640;
 constexpr std::size_t kMaxDots = 4000;
 constexpr double kTopViewMargin = 0.06;
-
-/// Round number of 1, 2 or 5 times a power of ten, at most `value`.
-double round_below(double value) {
-  const double power = std::pow(10.0, std::floor(std::log10(value)));
-  for (const double step : {5.0, 2.0}) {
-    if (step * power <= value) return step * power;
-  }
-  return power;
-}
-
-/// What one column of the chart shows.
-struct Column {
-  int inliers = 0;
-  bool has_pose = true;
-};
-
-std::vector<Column> chart_columns(const std::vector<FrameRecord>& frames) {
-  const std::size_t count =
-      std::min<std::size_t>(frames.size(), static_cast<std::size_t>(kChartWidth - kChartLeft));
-  std::vector<Column> columns(count);
-  for (std::size_t c = 0; c < count; ++c) {
-    const std::size_t begin = c * frames.size() / count;
-    const std::size_t end = (c + 1) * frames.size() / count;
-    columns[c].inliers = frames[begin].inliers;
-    for (std::size_t i = begin; i < end; ++i) {
-      columns[c].inliers = std::min(columns[c].inliers, frames[i].inliers);
-      if (!frames[i].world_from_cam) columns[c].has_pose = false;
-    }
-  }
-  return columns;
-}
 
 /// Places the world's ground plan in the picture. Robust: what 2 % of the points lie beyond is cut
 /// off.
@@ -165,8 +130,8 @@ std::string path_svg(const Reconstruction& reconstruction, const TopView& view) 
   if (start.empty()) return "";
   const std::size_t comma = start.find(',');
   return fmt::format(
-      "<path d=\"{}\" fill=\"none\" stroke=\"#111\" stroke-width=\"2\"/>\n"
-      "<circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"#111\"><title>start</title></circle>\n",
+      "<path d=\"{}\" fill=\"none\" stroke=\"currentColor\" stroke-width=\"2\"/>\n"
+      "<circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"currentColor\"><title>start</title></circle>\n",
       path, start.substr(0, comma), start.substr(comma + 1));
 }
 
@@ -175,12 +140,20 @@ std::string scale_bar_svg(const Reconstruction& reconstruction, const TopView& v
   const double pixels = length * view.pixels_per_unit();
   const int y = view.height() - 12;
   return fmt::format(
-      "<path d=\"M12,{0}H{1:.1f}\" stroke=\"#111\" stroke-width=\"3\"/>"
-      "<text x=\"12\" y=\"{2}\" font-size=\"14\">{3:g} {4}</text>\n",
+      "<path d=\"M12,{0}H{1:.1f}\" stroke=\"currentColor\" stroke-width=\"3\"/>"
+      "<text x=\"12\" y=\"{2}\" font-size=\"18\" fill=\"currentColor\">{3:g} {4}</text>\n",
       y, 12.0 + pixels, y - 6, length, reconstruction.metric ? "m" : "map units");
 }
 
 }  // namespace
+
+double round_below(double value) {
+  const double power = std::pow(10.0, std::floor(std::log10(value)));
+  for (const double step : {5.0, 2.0}) {
+    if (step * power <= value) return step * power;
+  }
+  return power;
+}
 
 std::string escape_html(const std::string& text) {
   std::string escaped;
@@ -208,46 +181,6 @@ std::string escape_html(const std::string& text) {
 std::string plane_color_css(int plane_id) {
   const Rgb color = plane_color(plane_id);
   return fmt::format("#{:02x}{:02x}{:02x}", color[0], color[1], color[2]);
-}
-
-std::string inlier_chart_svg(const Reconstruction& reconstruction) {
-  const std::vector<Column> columns = chart_columns(reconstruction.frames);
-  int highest = 1;
-  for (const Column& column : columns) highest = std::max(highest, column.inliers);
-  const double plot_height = kChartHeight - kChartBottom - 8;
-  const double plot_width = kChartWidth - kChartLeft;
-  const auto y_of = [&](double inliers) { return 8.0 + plot_height * (1.0 - inliers / highest); };
-  std::string svg =
-      fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"inliers by frame\">\n",
-                  kChartWidth, kChartHeight);
-  std::string line;
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    const double width = plot_width / static_cast<double>(columns.size());
-    const double x = kChartLeft + width * static_cast<double>(c);
-    if (!columns[c].has_pose) {
-      svg += fmt::format(
-          "<rect x=\"{:.2f}\" y=\"8\" width=\"{:.2f}\" height=\"{:.1f}\" fill=\"#f6c5c0\"/>\n", x,
-          width, plot_height);
-    }
-    line += fmt::format("{}{:.2f},{:.1f}", c == 0 ? "M" : "L", x + width / 2.0,
-                        y_of(columns[c].inliers));
-  }
-  const double step = round_below(std::max(1.0, highest / 2.0));
-  for (double value = 0.0; value <= highest; value += step) {
-    svg += fmt::format(
-        "<path d=\"M{0},{1:.1f}H{2}\" stroke=\"#ccc\"/><text x=\"{3}\" y=\"{4:.1f}\" "
-        "font-size=\"12\" text-anchor=\"end\">{5:g}</text>\n",
-        kChartLeft, y_of(value), kChartWidth, kChartLeft - 6, y_of(value) + 4.0, value);
-  }
-  const int last = reconstruction.frames.empty() ? 0 : reconstruction.frames.back().index;
-  const int first = reconstruction.frames.empty() ? 0 : reconstruction.frames.front().index;
-  svg +=
-      fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"#1668b8\" stroke-width=\"1.5\"/>\n", line);
-  svg += fmt::format(
-      "<text x=\"{}\" y=\"{}\" font-size=\"12\">frame {}</text><text x=\"{}\" y=\"{}\" "
-      "font-size=\"12\" text-anchor=\"end\">{}</text>\n</svg>\n",
-      kChartLeft, kChartHeight - 6, first, kChartWidth, kChartHeight - 6, last);
-  return svg;
 }
 
 std::string top_view_svg(const Reconstruction& reconstruction) {

@@ -189,4 +189,21 @@ void write_timings_json(const Reconstruction& reconstruction, const std::filesys
   write_file(path, json.dump(1) + "\n");
 }
 
+std::vector<TimingRow> read_timings_json(const std::filesystem::path& path) {
+  std::vector<TimingRow> rows;
+  try {
+    for (const auto& json : nlohmann::json::parse(read_file(path)).at("rows")) {
+      TimingRow& row = rows.emplace_back();
+      row.name = json.at("name").get<std::string>();
+      row.ms.count = json.at("count").get<int>();
+      row.ms.mean = json.at("mean").get<double>();
+      row.ms.median = json.at("median").get<double>();
+      row.ms.p95 = json.at("p95").get<double>();
+    }
+  } catch (const nlohmann::json::exception&) {
+    throw UserError(path.string() + ": is not a table of timings");
+  }
+  return rows;
+}
+
 }  // namespace planecast::engine

@@ -35,5 +35,7 @@ std::vector<TimingRow> timing_rows(const Reconstruction& reconstruction);
 
 /// timings.json: `{"unit": "ms", "rows": [{"name", "count", "mean", "median", "p95"}]}`.
 void write_timings_json(const Reconstruction& reconstruction, const std::filesystem::path& path);
+/// Its rows: name, count, mean, median and p95. Throws UserError naming the file.
+std::vector<TimingRow> read_timings_json(const std::filesystem::path& path);
 
 }  // namespace planecast::engine

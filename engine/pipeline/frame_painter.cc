@@ -69,18 +69,25 @@ FramePainter::FramePainter(const Reconstruction& reconstruction, const Content& 
       warp_(reconstruction.camera),
       grain_(options.seed),
       renderer_(renderer_options(options)) {
-  for (const ContentItem& item : content.items) {
-    if (const auto world_from_model = item.placed.world_from_model(reconstruction.planes)) {
-      scene_.instances.push_back(to_instance(item, *world_from_model));
-    }
-  }
-  if (options.shadows) scene_.catchers = shadow_catchers(reconstruction, content);
-  if (options.occlusion == Occlusion::kPlanes || options.occlusion == Occlusion::kBoth) {
-    scene_.occluders = plane_occluders(reconstruction, content);
-  }
+  set_content(content);
   scene_.light.sun.casts_shadow = options.shadows;
   scene_.light.sun.softness = kShadowSoftness;
   scene_.light.sun.direction_to_light = to_glm(light.sun_direction);
+}
+
+void FramePainter::set_content(const Content& content) {
+  scene_.instances.clear();
+  scene_.catchers.clear();
+  scene_.occluders.clear();
+  for (const ContentItem& item : content.items) {
+    if (const auto world_from_model = item.placed.world_from_model(reconstruction_.planes)) {
+      scene_.instances.push_back(to_instance(item, *world_from_model));
+    }
+  }
+  if (options_.shadows) scene_.catchers = shadow_catchers(reconstruction_, content);
+  if (options_.occlusion == Occlusion::kPlanes || options_.occlusion == Occlusion::kBoth) {
+    scene_.occluders = plane_occluders(reconstruction_, content);
+  }
 }
 
 void FramePainter::set_light(double gain) {

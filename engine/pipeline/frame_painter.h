@@ -42,6 +42,9 @@ class FramePainter {
   FramePainter(const Reconstruction& reconstruction, const Content& content,
                const SceneLight& light, const PainterOptions& options);
 
+  /// Draws other content from now on; models that stay are kept.
+  void set_content(const Content& content);
+
   /// Returns whether anything was drawn. `frame.image` stays as it is; `picture` is CV_8UC3 BGR and
   /// holds the frame's picture. `time_s` runs the animations.
   bool paint(const slam::FrameInput& frame, const slam::Pose& world_from_cam, double time_s,

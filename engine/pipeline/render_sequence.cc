@@ -46,6 +46,8 @@ class SequenceRenderer {
         painter_(reconstruction, content_, light_, painter_options()) {
     for (const FrameRecord& record : reconstruction.frames) records_[record.index] = &record;
     result_.warnings = content_.warnings;
+    result_.renderer = painter_.renderer_description();
+    result_.objects = object_records(content_, scene, reconstruction);
   }
 
   RenderSequenceResult run(const Progress& progress);
@@ -75,6 +77,7 @@ class SequenceRenderer {
   Content content_;
   SceneLight light_;
   FramePainter painter_;
+  std::unique_ptr<DebugOverlay> overlay_;
   std::map<int, const FrameRecord*> records_;
   std::unique_ptr<VideoWriter> video_;
   std::vector<int> still_frames_;
@@ -141,12 +144,13 @@ cv::Mat SequenceRenderer::picture_of(const ReadFrame& job) {
   if (pose) {
     const double time_s = job.frame.timestamp - reconstruction_.frames.front().timestamp;
     result_.with_content += painter_.paint(job.frame, *pose, time_s, picture) ? 1 : 0;
-    result_.mean_ms["look"] += painter_.times().look_ms;
-    result_.mean_ms["draw"] += painter_.times().draw_ms;
-    result_.mean_ms["composite"] += painter_.times().composite_ms;
+    const PaintTimes& times = painter_.times();
+    result_.frame_times[job.index] = {
+        {"look", times.look_ms}, {"draw", times.draw_ms}, {"composite", times.composite_ms}};
   }
   if (options_.debug_overlay) {
-    draw_debug_overlay(reconstruction_, record, options_.causal, picture);
+    if (!overlay_) overlay_ = std::make_unique<DebugOverlay>(reconstruction_);
+    overlay_->draw(record, options_.causal, picture);
   }
   return picture;
 }
@@ -186,7 +190,9 @@ RenderSequenceResult SequenceRenderer::run(const Progress& progress) {
   // Even then what came before is completed; a video of nothing cannot be.
   if (video_ && (result_.frames > 0 || fatal.empty())) video_->finish();
   if (!fatal.empty()) throw UserError(fatal);
-  for (auto& [step, ms] : result_.mean_ms) ms /= std::max(result_.frames, 1);
+  for (const auto& [frame, times] : result_.frame_times) {
+    for (const auto& [step, ms] : times) result_.mean_ms[step] += ms / result_.frames;
+  }
   return std::move(result_);
 }
 

@@ -9,6 +9,7 @@
 
 #include "engine/pipeline/reconstruction.h"
 #include "engine/pipeline/track_sequence.h"
+#include "engine/scene/object_record.h"
 #include "engine/scene/scene_file.h"
 #include "engine/sequence/sequence.h"
 
@@ -34,6 +35,9 @@ struct RenderSequenceResult {
   std::vector<std::pair<int, cv::Mat>> stills;  ///< frame number and BGR picture
   std::vector<std::string> warnings;
   std::map<std::string, double> mean_ms;  ///< per frame, by step
+  std::map<int, StageTimes> frame_times;  ///< by frame number, of frames with a pose
+  std::vector<ObjectRecord> objects;
+  std::string renderer;  ///< the driver's own description
 };
 
 /// Draws the scene over every frame of the sequence. Frames without a pose keep their picture.

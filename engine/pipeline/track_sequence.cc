@@ -11,7 +11,9 @@
 #include "engine/pipeline/earlier_map.h"
 #include "engine/pipeline/map_to_records.h"
 #include "engine/scene/plane_classes.h"
+#include "engine/segmentation/choose_segmenter.h"
 #include "engine/user_error.h"
+#include "slam/stages/smooth_path.h"
 #include "slam/system.h"
 
 namespace planecast::engine {
@@ -25,24 +27,6 @@ bool use_depth(const Sequence& sequence, const std::string& mode) {
     throw UserError(sequence.path().string() + ": --mode rgbd needs depth, and there is none");
   }
   return true;
-}
-
-std::unique_ptr<slam::PlaneSegmenter> choose_segmenter(const Sequence& sequence, bool rgbd,
-                                                       const std::string& wish) {
-  std::string kind = wish;
-  if (kind == "auto") kind = sequence.has_labels() ? "masks" : rgbd ? "depth" : "none";
-  if (kind == "none") return slam::make_no_segmenter();
-  if (kind == "masks") {
-    if (!sequence.has_labels()) {
-      throw UserError(sequence.path().string() + ": --segmentation masks needs mask.txt");
-    }
-    return slam::make_mask_segmenter();
-  }
-  if (kind == "depth") {
-    if (!rgbd) throw UserError("--segmentation depth needs --mode rgbd");
-    return slam::make_depth_segmenter(sequence.camera());
-  }
-  throw UserError("--segmentation " + kind + ": expected auto, masks, depth or none");
 }
 
 std::shared_ptr<const slam::Vocabulary> load_vocabulary() {
@@ -125,11 +109,12 @@ class TwoPassTracker {
         rgbd_(use_depth(sequence, options.mode)),
         earlier_(read_earlier_map(options.map, sequence, rgbd_)),
         system_(system_options(options, rgbd_), earlier_.camera,
-                choose_segmenter(sequence, rgbd_, options.segmentation)),
+                choose_segmenter({options.segmentation, options.network}, sequence, rgbd_)),
         first_(sequence.first_frame()),
         count_(sequence.end_frame() - sequence.first_frame()) {
     frames_.resize(static_cast<std::size_t>(count_));
     tracked_.resize(static_cast<std::size_t>(count_));
+    localised_.resize(static_cast<std::size_t>(count_));
     times_.resize(static_cast<std::size_t>(count_));
     if (earlier_.map != nullptr) {
       system_.load(*earlier_.map);
@@ -155,6 +140,7 @@ class TwoPassTracker {
   void localise_run(int begin, int end, int step, int& done);
   bool localise_frame(int position, const std::optional<slam::Pose>& prior,
                       const slam::ImageFeatures& image);
+  void smooth();
   void record_first(int position, const slam::FrameTrack& track);
   Reconstruction records();
 
@@ -169,6 +155,7 @@ class TwoPassTracker {
   int count_;
   std::vector<FrameRecord> frames_;
   std::vector<Tracked> tracked_;
+  std::vector<std::optional<slam::PathPose>> localised_;  ///< in the second pass
   std::vector<StageTimes> times_;
   std::map<std::string, std::vector<double>> mapping_times_;
   slam::JointResult joint_;
@@ -236,6 +223,11 @@ bool TwoPassTracker::localise_frame(int position, const std::optional<slam::Pose
   FrameRecord& record = frames_[static_cast<std::size_t>(position)];
   record.world_from_cam = estimate->cam_from_world.inverse();
   record.inliers = estimate->inliers;
+  // Poses that claim to be better than a tenth of the expected errors are not believed.
+  constexpr double kLeastVariance = 0.01;
+  localised_[static_cast<std::size_t>(position)] = slam::PathPose{
+      estimate->cam_from_world,
+      estimate->information / std::max(estimate->rms * estimate->rms, kLeastVariance)};
   if (record.state != "tracked") record.state = "localised";
   return true;
 }
@@ -284,6 +276,33 @@ void TwoPassTracker::second_pass() {
         frames_[static_cast<std::size_t>(position + 1)].world_from_cam->inverse();
     localise_frame(position, prior, system_.prepare(sequence_.read(first_ + position), true));
   }
+  smooth();
+}
+
+/// Smooths each run of frames that were localised one after the other.
+void TwoPassTracker::smooth() {
+  std::vector<double> gaps;
+  for (std::size_t p = 1; p < frames_.size(); ++p) {
+    gaps.push_back(frames_[p].timestamp - frames_[p - 1].timestamp);
+  }
+  if (gaps.empty()) return;
+  std::nth_element(gaps.begin(), gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2),
+                   gaps.end());
+  // A frame that the recorder dropped is a gap as well.
+  const double longest_gap = 1.5 * gaps[gaps.size() / 2];
+  for (std::size_t begin = 0; begin < frames_.size();) {
+    std::vector<slam::PathPose> path;
+    std::size_t end = begin;
+    for (; end < frames_.size() && localised_[end]; ++end) {
+      if (end > begin && frames_[end].timestamp - frames_[end - 1].timestamp > longest_gap) break;
+      path.push_back(*localised_[end]);
+    }
+    const std::vector<slam::Pose> smooth = slam::smooth_path(path);
+    for (std::size_t i = 0; i < smooth.size(); ++i) {
+      frames_[begin + i].world_from_cam = smooth[i].inverse();
+    }
+    begin = std::max(end, begin + 1);
+  }
 }
 
 Reconstruction TwoPassTracker::records() {
@@ -291,6 +310,7 @@ Reconstruction TwoPassTracker::records() {
       map_to_records(system_.map(), system_.camera(), earlier_.metric, first_own_keyframe_);
   result.map = std::make_shared<const slam::Map>(system_.map());
   result.mode = rgbd_ ? "rgbd" : "mono";
+  result.segmentation = system_.segmentation();
   if (joint_.plane_rms_before > 0.0) {
     result.plane_rms = PlaneRms{joint_.plane_rms_before,
                                 joint_.kept ? joint_.plane_rms_after : joint_.plane_rms_before};

@@ -11,11 +11,11 @@
 namespace planecast::engine {
 
 struct TrackSequenceOptions {
-  std::string mode = "auto";  ///< mono | rgbd | auto (rgbd where there is depth)
-  std::string segmentation =
-      "auto";           ///< auto | masks | depth | none (auto: masks, else depth, else none)
-  bool causal = false;  ///< no second pass
-  int threads = 2;      ///< changes no result
+  std::string mode = "auto";          ///< mono | rgbd | auto (rgbd where there is depth)
+  std::string segmentation = "auto";  ///< see engine/segmentation/choose_segmenter.h
+  std::string network;                ///< ONNX file for the segmentation; empty: our own
+  bool causal = false;                ///< no second pass
+  int threads = 2;                    ///< changes no result
   std::uint64_t seed = 1;
   bool skip_unreadable = false;
   std::optional<Eigen::Vector3d> up;    ///< unit, world; estimated where not given

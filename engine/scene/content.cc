@@ -28,25 +28,6 @@ int find_animation(const render::Model& model, const SceneObject& object) {
                   wanted + "' (it has: " + (list.empty() ? "none" : list) + ")");
 }
 
-/// Models by file, each read once.
-class ModelShelf {
- public:
-  const std::shared_ptr<const render::Model>& load(const std::string& path) {
-    std::shared_ptr<const render::Model>& model = models_[path];
-    if (model) return model;
-    render::ImportResult result = render::import_gltf(path);
-    if (!result.model) throw UserError(path + ": " + result.error);
-    for (const std::string& warning : result.warnings) warnings_.push_back(path + ": " + warning);
-    model = result.model;
-    return model;
-  }
-  const std::vector<std::string>& warnings() const { return warnings_; }
-
- private:
-  std::map<std::string, std::shared_ptr<const render::Model>> models_;
-  std::vector<std::string> warnings_;
-};
-
 ModelBox model_box(const render::Model& model) {
   const render::Bounds bounds = render::model_bounds(model);
   return {Eigen::Vector3d(bounds.min.x, bounds.min.y, bounds.min.z),
@@ -69,16 +50,21 @@ void check_content(const SceneFile& scene, int first_frame, int end_frame) {
 }
 
 Content load_content(const Reconstruction& reconstruction, const SceneFile& scene, bool causal) {
-  Content content;
   ModelShelf shelf;
+  return load_content(reconstruction, scene, causal, shelf);
+}
+
+Content load_content(const Reconstruction& reconstruction, const SceneFile& scene, bool causal,
+                     ModelShelf& shelf) {
+  Content content;
   for (const SceneObject& object : scene.objects) {
     ContentItem item;
     item.model = shelf.load(object.model.string());
-    const ModelBox box = model_box(*item.model);
-    item.placed = place_object(reconstruction, object, box,
+    item.box = model_box(*item.model);
+    item.placed = place_object(reconstruction, object, item.box,
                                size_unit(reconstruction, scene, object, causal), causal);
     item.animation = find_animation(*item.model, object);
-    const Eigen::Vector3d sides = box.sizes() * item.placed.scale;
+    const Eigen::Vector3d sides = item.box.sizes() * item.placed.scale;
     item.longest_side = sides.maxCoeff();
     item.footprint = 0.5 * (item.placed.hangs ? sides.head<2>().norm()
                                               : Eigen::Vector2d(sides.x(), sides.z()).norm());
@@ -86,6 +72,19 @@ Content load_content(const Reconstruction& reconstruction, const SceneFile& scen
   }
   content.warnings = shelf.warnings();
   return content;
+}
+
+std::vector<ObjectRecord> object_records(const Content& content, const SceneFile& scene,
+                                         const Reconstruction& reconstruction) {
+  std::vector<ObjectRecord> records;
+  for (std::size_t i = 0; i < content.items.size(); ++i) {
+    const ContentItem& item = content.items[i];
+    const auto world_from_model = item.placed.world_from_model(reconstruction.planes);
+    if (!world_from_model) continue;
+    records.push_back({scene.objects[i].model.stem().string(), item.placed.anchor.plane_id,
+                       *world_from_model, item.box, item.model});
+  }
+  return records;
 }
 
 }  // namespace planecast::engine

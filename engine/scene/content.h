@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "engine/pipeline/reconstruction.h"
+#include "engine/scene/model_shelf.h"
+#include "engine/scene/object_record.h"
 #include "engine/scene/placement.h"
 #include "engine/scene/scene_file.h"
 #include "render/scene.h"
@@ -15,6 +17,7 @@ namespace planecast::engine {
 struct ContentItem {
   std::shared_ptr<const render::Model> model;
   PlacedObject placed;
+  ModelBox box;
   int animation = -1;         ///< -1: rest pose
   double longest_side = 0.0;  ///< world units
   double footprint = 0.0;     ///< radius of a circle about the contact that holds the model's base
@@ -32,5 +35,12 @@ void check_content(const SceneFile& scene, int first_frame, int end_frame);
 /// Loads every model once and places every object. Throws UserError naming the file (and line) for
 /// a model that cannot be read, an animation it has not, and places that are not there.
 Content load_content(const Reconstruction& reconstruction, const SceneFile& scene, bool causal);
+/// The same with models that may have been read before.
+Content load_content(const Reconstruction& reconstruction, const SceneFile& scene, bool causal,
+                     ModelShelf& shelf);
+
+/// Where the objects are. Those whose plane is gone are left out.
+std::vector<ObjectRecord> object_records(const Content& content, const SceneFile& scene,
+                                         const Reconstruction& reconstruction);
 
 }  // namespace planecast::engine

@@ -46,6 +46,7 @@ class GlContext;
   X(PFNGLDISABLEPROC, Disable)                                                         \
   X(PFNGLDRAWARRAYSPROC, DrawArrays)                                                   \
   X(PFNGLDRAWELEMENTSPROC, DrawElements)                                               \
+  X(PFNGLDRAWELEMENTSBASEVERTEXPROC, DrawElementsBaseVertex)                           \
   X(PFNGLENABLEPROC, Enable)                                                           \
   X(PFNGLENABLEVERTEXARRAYATTRIBPROC, EnableVertexArrayAttrib)                         \
   X(PFNGLFINISHPROC, Finish)                                                           \

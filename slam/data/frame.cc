@@ -57,6 +57,10 @@ void Features::find_in_area(const Eigen::Vector2d& pixel, double radius_px, int 
   }
 }
 
-double ScaleLevels::scale(int octave) const { return std::pow(factor, octave); }
+double ScaleLevels::scale(int octave) const {
+  double scale = 1.0;
+  for (int i = 0; i < octave; ++i) scale *= factor;
+  return scale;
+}
 
 }  // namespace planecast::slam

@@ -16,6 +16,31 @@ bool sees(const std::vector<Observation>& observations, KeyframeId keyframe) {
                      [keyframe](const Observation& o) { return o.keyframe == keyframe; });
 }
 
+/// Index of the one with the least median distance to all [K]; the first of equals.
+std::size_t medoid_of(const std::vector<const Descriptor*>& descriptors) {
+  const std::size_t n = descriptors.size();
+  if (n < 3) return 0;  // each is its own nearest, and the median that of two
+  std::vector<int> distances(n * n, 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i + 1; j < n; ++j) {
+      distances[i * n + j] = distances[j * n + i] =
+          hamming_distance(*descriptors[i], *descriptors[j]);
+    }
+  }
+  std::size_t best = 0;
+  int best_median = 257;
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto begin = distances.begin() + static_cast<std::ptrdiff_t>(i * n);
+    const auto middle = begin + static_cast<std::ptrdiff_t>((n - 1) / 2);
+    std::nth_element(begin, middle, begin + static_cast<std::ptrdiff_t>(n));
+    if (*middle < best_median) {
+      best_median = *middle;
+      best = i;
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 void Map::add_observation(LandmarkId landmark, KeyframeId keyframe, int keypoint) {
@@ -156,30 +181,16 @@ std::vector<std::pair<KeyframeId, int>> Map::covisible(KeyframeId keyframe, int 
 void Map::update_landmark_summary(LandmarkId id, const ScaleLevels& levels) {
   Landmark& landmark = landmarks.at(id);
   if (landmark.observations.empty()) return;
-  std::vector<Descriptor> descriptors;
+  std::vector<const Descriptor*> descriptors;
+  descriptors.reserve(landmark.observations.size());
   Eigen::Vector3d view_sum = Eigen::Vector3d::Zero();
   for (const Observation& observation : landmark.observations) {
     const Keyframe& keyframe = keyframes.at(observation.keyframe);
     descriptors.push_back(
-        keyframe.features->descriptors[static_cast<std::size_t>(observation.keypoint)]);
+        &keyframe.features->descriptors[static_cast<std::size_t>(observation.keypoint)]);
     view_sum += (keyframe.centre_world() - landmark.position).normalized();
   }
-  // The medoid: least median distance to the others [K].
-  std::size_t best = 0;
-  int best_median = 257;
-  std::vector<int> distances(descriptors.size());
-  for (std::size_t i = 0; i < descriptors.size(); ++i) {
-    for (std::size_t j = 0; j < descriptors.size(); ++j) {
-      distances[j] = hamming_distance(descriptors[i], descriptors[j]);
-    }
-    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>((distances.size() - 1) / 2);
-    std::nth_element(distances.begin(), middle, distances.end());
-    if (*middle < best_median) {
-      best_median = *middle;
-      best = i;
-    }
-  }
-  landmark.descriptor = descriptors[best];
+  landmark.descriptor = *descriptors[medoid_of(descriptors)];
   if (view_sum.norm() > 1e-9) landmark.view_from = view_sum.normalized();
 
   const Observation& reference = landmark.observations.front();

@@ -134,9 +134,12 @@ std::vector<std::pair<int, int>> match_expectations(const Features& features,
 }
 
 int predict_octave(const Landmark& landmark, double distance, const ScaleLevels& levels) {
-  const double ratio = landmark.max_distance / std::max(distance, 1e-12);
-  const int octave = static_cast<int>(std::ceil(std::log(ratio) / std::log(levels.factor)));
-  return std::clamp(octave, 0, levels.levels - 1);
+  int octave = 0;
+  double reach = distance;
+  for (; octave < levels.levels - 1 && reach < landmark.max_distance; ++octave) {
+    reach *= levels.factor;
+  }
+  return octave;
 }
 
 bool expect_landmark(const Landmark& landmark, const Camera& camera, const Pose& cam_from_world,

@@ -47,27 +47,59 @@ float orientation_deg(const cv::Mat& image, const cv::Point2f& point,
   return cv::fastAtan2(static_cast<float>(moment_y), static_cast<float>(moment_x));
 }
 
-/// In each cell the corners above `high`, or all where there is none of those.
-std::vector<cv::KeyPoint> prefer_strong(const std::vector<cv::KeyPoint>& corners, int width,
-                                        int height, int cell_px, int high) {
-  const int columns = width / cell_px + 1;
-  const int rows = height / cell_px + 1;
-  const auto cell = [&](const cv::KeyPoint& corner) {
-    return static_cast<std::size_t>(static_cast<int>(corner.pt.y) / cell_px * columns +
-                                    static_cast<int>(corner.pt.x) / cell_px);
-  };
-  std::vector<char> has_strong(static_cast<std::size_t>(columns * rows), 0);
-  for (const cv::KeyPoint& corner : corners) {
-    if (corner.response >= static_cast<float>(high)) has_strong[cell(corner)] = 1;
+/// The cells of an image, row by row.
+struct Cells {
+  int columns;
+  int rows;
+  int side_px;
+
+  Cells(const cv::Size& image, int side)
+      : columns((image.width + side - 1) / side),
+        rows((image.height + side - 1) / side),
+        side_px(side) {}
+  std::size_t at(const cv::Point2f& point) const {
+    return static_cast<std::size_t>(static_cast<int>(point.y) / side_px * columns +
+                                    static_cast<int>(point.x) / side_px);
   }
-  std::vector<cv::KeyPoint> kept;
-  kept.reserve(corners.size());
-  for (const cv::KeyPoint& corner : corners) {
-    if (corner.response >= static_cast<float>(high) || has_strong[cell(corner)] == 0) {
-      kept.push_back(corner);
+};
+
+/// Corners above `low` in the cells begin..end of a row.
+void detect_in_run(const cv::Mat& image, const Cells& cells, int row, int begin, int end, int low,
+                   std::vector<cv::KeyPoint>& corners) {
+  // FAST looks 3 px about a corner, and one corner beside it for the strongest.
+  constexpr int kAround = 4;
+  const cv::Rect inside = cv::Rect(begin * cells.side_px, row * cells.side_px,
+                                   (end - begin) * cells.side_px, cells.side_px) &
+                          cv::Rect({}, image.size());
+  const cv::Rect reach = cv::Rect(inside.x - kAround, inside.y - kAround,
+                                  inside.width + 2 * kAround, inside.height + 2 * kAround) &
+                         cv::Rect({}, image.size());
+  std::vector<cv::KeyPoint> found;
+  cv::FAST(image(reach), found, low, true);
+  for (cv::KeyPoint& corner : found) {
+    corner.pt += cv::Point2f(static_cast<float>(reach.x), static_cast<float>(reach.y));
+    if (inside.contains(cv::Point(corner.pt))) corners.push_back(corner);
+  }
+}
+
+/// Corners above `high`; those above `low` in the cells that have none of these.
+std::vector<cv::KeyPoint> detect_corners(const cv::Mat& image, int high, int low, int cell_px) {
+  std::vector<cv::KeyPoint> corners;
+  cv::FAST(image, corners, high, true);
+  if (low >= high) return corners;
+  const Cells cells(image.size(), cell_px);
+  std::vector<char> has_strong(static_cast<std::size_t>(cells.columns * cells.rows), 0);
+  for (const cv::KeyPoint& corner : corners) has_strong[cells.at(corner.pt)] = 1;
+  for (int row = 0; row < cells.rows; ++row) {
+    const auto strong = has_strong.begin() + static_cast<std::ptrdiff_t>(row * cells.columns);
+    for (int begin = 0; begin < cells.columns;) {
+      int end = begin;
+      while (end < cells.columns && strong[end] == 0) ++end;
+      if (end > begin) detect_in_run(image, cells, row, begin, end, low, corners);
+      begin = end + 1;
     }
   }
-  return kept;
+  return corners;
 }
 
 }  // namespace
@@ -81,8 +113,6 @@ struct OrbExtractor::Impl {
   void build_pyramid(const cv::Mat& grey);
   std::vector<cv::KeyPoint> detect(int level, int limit, int threshold) const;
   std::vector<cv::KeyPoint> detect_all(int limit, int threshold) const;
-  /// May reorder the corners.
-  void describe(std::vector<cv::KeyPoint>& corners, std::vector<Descriptor>& descriptors) const;
 };
 
 void OrbExtractor::Impl::build_pyramid(const cv::Mat& grey) {
@@ -102,10 +132,8 @@ std::vector<cv::KeyPoint> OrbExtractor::Impl::detect(int level, int limit, int t
   const int inset = kBorder - 3;
   if (image.cols <= 2 * kBorder || image.rows <= 2 * kBorder) return {};
   const cv::Rect inner(inset, inset, image.cols - 2 * inset, image.rows - 2 * inset);
-  std::vector<cv::KeyPoint> corners;
-  cv::FAST(image(inner), corners, threshold, true);
-  corners = prefer_strong(corners, inner.width, inner.height, options.cell_px,
-                          std::max(threshold, options.fast_threshold));
+  std::vector<cv::KeyPoint> corners =
+      detect_corners(image(inner), options.fast_threshold, threshold, options.cell_px);
   corners = spread_corners(corners, inner.width, inner.height, limit);
   const auto scale = static_cast<float>(options.levels.scale(level));
   for (cv::KeyPoint& corner : corners) {
@@ -133,17 +161,6 @@ std::vector<cv::KeyPoint> OrbExtractor::Impl::detect_all(int limit, int threshol
   return all;
 }
 
-void OrbExtractor::Impl::describe(std::vector<cv::KeyPoint>& corners,
-                                  std::vector<Descriptor>& descriptors) const {
-  if (corners.empty()) return;
-  cv::Mat rows;
-  descriptor->compute(pyramid.front(), corners, rows);
-  descriptors.resize(corners.size());
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    std::memcpy(descriptors[i].data(), rows.ptr<uchar>(static_cast<int>(i)), sizeof(Descriptor));
-  }
-}
-
 OrbExtractor::OrbExtractor(const OrbOptions& options) : impl_(std::make_unique<Impl>()) {
   impl_->options = options;
   // Only its descriptor is used; an edge threshold of 1 keeps our own border rule the only one.
@@ -154,6 +171,12 @@ OrbExtractor::OrbExtractor(const OrbOptions& options) : impl_(std::make_unique<I
 OrbExtractor::~OrbExtractor() = default;
 
 Features OrbExtractor::extract(const cv::Mat& grey, const Camera& camera, int limit) {
+  Features features = detect(grey, camera, limit);
+  describe(features);
+  return features;
+}
+
+Features OrbExtractor::detect(const cv::Mat& grey, const Camera& camera, int limit) {
   const OrbOptions& options = impl_->options;
   if (limit == 0) limit = options.features;
   impl_->build_pyramid(grey);
@@ -162,7 +185,6 @@ Features OrbExtractor::extract(const cv::Mat& grey, const Camera& camera, int li
     corners = impl_->detect_all(limit, options.fast_threshold_lowest);
   }
   Features features;
-  impl_->describe(corners, features.descriptors);
   features.keypoints.reserve(corners.size());
   for (const cv::KeyPoint& corner : corners) {
     Keypoint keypoint;
@@ -177,39 +199,51 @@ Features OrbExtractor::extract(const cv::Mat& grey, const Camera& camera, int li
   return features;
 }
 
-void OrbExtractor::set_image(const cv::Mat& grey) { impl_->build_pyramid(grey); }
+void OrbExtractor::set_image(const cv::Mat& grey) {
+  // The pyramid holds on to its image, so that the same place in memory is the same image.
+  const bool known = !impl_->pyramid.empty() && impl_->pyramid.front().data == grey.data &&
+                     impl_->pyramid.front().size() == grey.size();
+  if (!known) impl_->build_pyramid(grey);
+}
 
 std::vector<int> OrbExtractor::append(const std::vector<Keypoint>& points, Features& features) {
-  const ScaleLevels& levels = impl_->options.levels;
-  std::vector<cv::KeyPoint> corners;
+  std::vector<int> indices(points.size(), -1);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto level = static_cast<std::size_t>(points[i].octave);
     if (level >= impl_->pyramid.size()) continue;
     const cv::Mat& image = impl_->pyramid[level];
-    const auto scale = static_cast<float>(levels.scale(points[i].octave));
-    cv::KeyPoint corner(points[i].raw.x() / scale, points[i].raw.y() / scale, 31.0F * scale);
-    if (corner.pt.x < kBorder || corner.pt.y < kBorder ||
-        corner.pt.x > static_cast<float>(image.cols - 1 - kBorder) ||
-        corner.pt.y > static_cast<float>(image.rows - 1 - kBorder)) {
+    const auto scale = static_cast<float>(impl_->options.levels.scale(points[i].octave));
+    const cv::Point2f at_level(points[i].raw.x() / scale, points[i].raw.y() / scale);
+    if (at_level.x < kBorder || at_level.y < kBorder ||
+        at_level.x > static_cast<float>(image.cols - 1 - kBorder) ||
+        at_level.y > static_cast<float>(image.rows - 1 - kBorder)) {
       continue;
     }
-    corner.angle = orientation_deg(image, corner.pt, impl_->half_width);
-    corner.pt *= scale;
-    corner.octave = points[i].octave;
-    corner.class_id = static_cast<int>(i);
-    corners.push_back(corner);
-  }
-  std::vector<Descriptor> descriptors;
-  impl_->describe(corners, descriptors);
-  std::vector<int> indices(points.size(), -1);
-  for (std::size_t c = 0; c < corners.size(); ++c) {
-    const auto i = static_cast<std::size_t>(corners[c].class_id);
     indices[i] = features.size();
     features.keypoints.push_back(points[i]);
-    features.keypoints.back().angle_deg = corners[c].angle;
-    features.descriptors.push_back(descriptors[c]);
+    features.keypoints.back().angle_deg = orientation_deg(image, at_level, impl_->half_width);
   }
   return indices;
+}
+
+void OrbExtractor::describe(Features& features) const {
+  const std::size_t described = features.descriptors.size();
+  std::vector<cv::KeyPoint> corners;
+  for (std::size_t k = described; k < features.keypoints.size(); ++k) {
+    const Keypoint& keypoint = features.keypoints[k];
+    const auto scale = static_cast<float>(impl_->options.levels.scale(keypoint.octave));
+    corners.emplace_back(keypoint.raw.x(), keypoint.raw.y(), 31.0F * scale, keypoint.angle_deg,
+                         keypoint.response, keypoint.octave, static_cast<int>(k));
+  }
+  features.descriptors.resize(features.keypoints.size());
+  if (corners.empty()) return;
+  cv::Mat rows;
+  impl_->descriptor->compute(impl_->pyramid.front(), corners, rows);
+  // It may have put them in another order.
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    std::memcpy(features.descriptors[static_cast<std::size_t>(corners[i].class_id)].data(),
+                rows.ptr<uchar>(static_cast<int>(i)), sizeof(Descriptor));
+  }
 }
 
 }  // namespace planecast::slam

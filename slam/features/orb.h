@@ -31,12 +31,18 @@ class OrbExtractor {
   /// The result has raw and undistorted pixels, no depth, no labels; its grid is built.
   Features extract(const cv::Mat& grey, const Camera& camera, int limit = 0);
 
-  /// Makes `grey` the image that append() describes points in, as extract() does.
+  /// The same without descriptors, which are half of the time: more points may come before
+  /// describe().
+  Features detect(const cv::Mat& grey, const Camera& camera, int limit = 0);
+  /// Makes `grey` the image of append() and describe(), as detect() and extract() do. Its pixels
+  /// must not change as long as it is.
   void set_image(const cv::Mat& grey);
-  /// Describes points found otherwise (raw pixel, undistorted pixel and octave are given) in the
-  /// image that was set last, and appends them to its `features`. Returns the index of each, or -1
-  /// for one too near to the border. The grid has to be built again.
+  /// Appends points found otherwise (raw pixel, undistorted pixel and octave are given) in the
+  /// image that was set last to its `features`, without descriptors. Returns the index of each, or
+  /// -1 for one too near to the border. The grid has to be built again.
   std::vector<int> append(const std::vector<Keypoint>& points, Features& features);
+  /// Describes the keypoints behind the last descriptor, in the image that was set last.
+  void describe(Features& features) const;
 
  private:
   struct Impl;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 
 #include "slam/features/sample_square.h"
 
@@ -15,18 +16,6 @@ constexpr float kFirst = -0.5F * (kPatchSide - 1);
 constexpr int kRim = kPatchSide + 2;  ///< with one sample around it, for the gradients
 /// Least eigenvalue of the gradients' second moments, per pixel: in squared grey values.
 constexpr float kMinMoment = 2.0F;
-
-float bilinear(const cv::Mat& image, float x, float y) {
-  const int x0 = static_cast<int>(x);
-  const int y0 = static_cast<int>(y);
-  const float fx = x - static_cast<float>(x0);
-  const float fy = y - static_cast<float>(y0);
-  const uchar* upper = image.ptr<uchar>(y0) + x0;
-  const uchar* lower = upper + image.step[0];
-  const float top = static_cast<float>(upper[0]) + fx * static_cast<float>(upper[1] - upper[0]);
-  const float bottom = static_cast<float>(lower[0]) + fx * static_cast<float>(lower[1] - lower[0]);
-  return top + fy * (bottom - top);
-}
 
 bool inside(const cv::Mat& image, const Eigen::Vector2f& pixel) {
   return pixel.x() >= 0.0F && pixel.y() >= 0.0F && pixel.x() < static_cast<float>(image.cols - 1) &&
@@ -43,15 +32,35 @@ bool sample_with_rim(const cv::Mat& image, const Eigen::Vector2f& centre,
       if (!inside(image, centre + ref_from_patch * Eigen::Vector2f(u, v))) return false;
     }
   }
-  const Eigen::Vector2f along = ref_from_patch.col(0);
-  const Eigen::Vector2f down = ref_from_patch.col(1);
-  for (int v = 0; v < kRim; ++v) {
-    const Eigen::Vector2f begin = centre + first * along + (first + static_cast<float>(v)) * down;
-    for (int u = 0; u < kRim; ++u) {
-      const auto reach = static_cast<float>(u);
-      rim[static_cast<std::size_t>(v * kRim + u)] =
-          bilinear(image, begin.x() + reach * along.x(), begin.y() + reach * along.y());
+  // In three sweeps, of which the first and the last are vectors: places, pixels, values.
+  constexpr std::size_t kSamples = kRim * kRim;
+  std::array<float, kSamples> x;
+  std::array<float, kSamples> y;
+  for (std::size_t v = 0; v < kRim; ++v) {
+    const Eigen::Vector2f begin = centre + first * ref_from_patch.col(0) +
+                                  (first + static_cast<float>(v)) * ref_from_patch.col(1);
+    for (std::size_t u = 0; u < kRim; ++u) {
+      x[v * kRim + u] = begin.x() + static_cast<float>(u) * ref_from_patch(0, 0);
+      y[v * kRim + u] = begin.y() + static_cast<float>(u) * ref_from_patch(1, 0);
     }
+  }
+  std::array<std::array<float, kSamples>, 4> pixel;
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const int x0 = static_cast<int>(x[i]);
+    const int y0 = static_cast<int>(y[i]);
+    const uchar* upper = image.ptr<uchar>(y0) + x0;
+    const uchar* lower = upper + image.step[0];
+    x[i] -= static_cast<float>(x0);
+    y[i] -= static_cast<float>(y0);
+    pixel[0][i] = static_cast<float>(upper[0]);
+    pixel[1][i] = static_cast<float>(upper[1]);
+    pixel[2][i] = static_cast<float>(lower[0]);
+    pixel[3][i] = static_cast<float>(lower[1]);
+  }
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const float top = pixel[0][i] + x[i] * (pixel[1][i] - pixel[0][i]);
+    const float bottom = pixel[2][i] + x[i] * (pixel[3][i] - pixel[2][i]);
+    rim[i] = top + y[i] * (bottom - top);
   }
   return true;
 }
@@ -106,23 +115,40 @@ std::optional<PatchTemplate> make_template(const cv::Mat& image, const Eigen::Ve
   return patch;
 }
 
-float correlate(const PatchTemplate& patch, const cv::Mat& image, const Eigen::Vector2f& centre) {
+QuickTemplate::QuickTemplate(const PatchTemplate& patch) {
+  // 255 times this, times 64 pixels of 255, still fits 32 bits.
+  constexpr float kScale = 64.0F;
+  for (std::size_t i = 0; i < kPatchArea; ++i) {
+    const auto rounded =
+        static_cast<std::int16_t>(std::lround(kScale * patch.value[static_cast<int>(i)]));
+    value_[i] = rounded;
+    sum_ += rounded;
+  }
+  norm_ = kScale * patch.norm;
+}
+
+float QuickTemplate::correlate(const cv::Mat& image, const Eigen::Vector2f& centre) const {
   const int x0 = static_cast<int>(std::floor(centre.x() + kFirst + 0.5F));
   const int y0 = static_cast<int>(std::floor(centre.y() + kFirst + 0.5F));
   if (x0 < 0 || y0 < 0 || x0 + kPatchSide > image.cols || y0 + kPatchSide > image.rows)
     return -1.0F;
-  PatchValues current;
+  std::array<uchar, kPatchArea> pixels;
   for (int v = 0; v < kPatchSide; ++v) {
-    const uchar* row = image.ptr<uchar>(y0 + v) + x0;
-    for (int u = 0; u < kPatchSide; ++u) {
-      current[v * kPatchSide + u] = static_cast<float>(row[u]);
-    }
+    std::memcpy(pixels.data() + v * kPatchSide, image.ptr<uchar>(y0 + v) + x0, kPatchSide);
   }
-  // The template has zero mean, so that the image's mean drops out of the product.
-  const float sum = current.sum();
-  const float square = current.square().sum() - sum * sum / kPatchArea;
-  if (square < 1.0F) return -1.0F;
-  return (current * patch.value).sum() / (std::sqrt(square) * patch.norm);
+  int sum = 0;
+  int square = 0;
+  int product = 0;
+  for (std::size_t i = 0; i < kPatchArea; ++i) {
+    const std::int16_t grey = pixels[i];
+    sum += grey;
+    square += grey * grey;
+    product += grey * value_[i];
+  }
+  const int variance = square - sum * sum / kPatchArea;
+  if (variance < 1) return -1.0F;
+  return static_cast<float>(product - sum_ * sum / kPatchArea) /
+         (std::sqrt(static_cast<float>(variance)) * norm_);
 }
 
 std::optional<PatchAlignment> align_patch(const PatchTemplate& patch, const cv::Mat& image,

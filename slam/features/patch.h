@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstdint>
 #include <opencv2/core.hpp>
 #include <optional>
 
@@ -28,10 +30,19 @@ struct PatchTemplate {
 std::optional<PatchTemplate> make_template(const cv::Mat& image, const Eigen::Vector2f& centre,
                                            const Eigen::Matrix2f& ref_from_patch);
 
-/// Zero-mean normalised correlation of the template with the image, -1..1, at the whole pixels
-/// nearest to a place: a quick look, half a pixel off at most. -1 where it reaches beyond the
-/// image.
-float correlate(const PatchTemplate& patch, const cv::Mat& image, const Eigen::Vector2f& centre);
+/// A template for many quick looks, in whole numbers.
+class QuickTemplate {
+ public:
+  explicit QuickTemplate(const PatchTemplate& patch);
+  /// Zero-mean normalised correlation with the image, -1..1, at the whole pixels nearest to a
+  /// place: half a pixel off at most. -1 where it reaches beyond the image.
+  float correlate(const cv::Mat& image, const Eigen::Vector2f& centre) const;
+
+ private:
+  std::array<std::int16_t, kPatchArea> value_;
+  int sum_ = 0;  ///< what rounding leaves of its zero mean
+  float norm_ = 0.0F;
+};
 
 struct PatchAlignOptions {
   int iterations = 10;

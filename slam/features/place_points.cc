@@ -2,8 +2,6 @@
 
 #include <cstddef>
 
-#include "slam/features/matching.h"
-
 namespace planecast::slam {
 namespace {
 
@@ -12,11 +10,11 @@ int free_keypoint_at(const FoundPoint& point, double radius_px, const std::vecto
   near.clear();
   features.find_in_area(point.pixel, radius_px, point.octave - 1, point.octave + 1, near);
   int best = kNone;
-  int least = kLooseDistance + 1;
+  auto least = static_cast<float>(radius_px * radius_px);
   for (const int k : near) {
     if (taken[static_cast<std::size_t>(k)] != 0) continue;
-    const int distance =
-        hamming_distance(point.descriptor, features.descriptors[static_cast<std::size_t>(k)]);
+    const float distance =
+        (features.keypoints[static_cast<std::size_t>(k)].raw - point.raw).squaredNorm();
     if (distance < least) {
       least = distance;
       best = k;

@@ -1,12 +1,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstring>
 #include <opencv2/core.hpp>
 
 namespace planecast::slam {
 
-/// Grey values of a square of kSide x kSide pixels about `centre`, row by row, bilinear. False where it
-/// reaches beyond the image (8-bit, one channel).
+/// Grey values of a square of kSide x kSide pixels about `centre`, row by row, bilinear. False
+/// where it reaches beyond the image (8-bit, one channel).
 template <int kSide>
 bool sample_square(const cv::Mat& image, const Eigen::Vector2f& centre,
                    Eigen::Array<float, kSide * kSide, 1>& values) {
@@ -20,18 +23,22 @@ bool sample_square(const cv::Mat& image, const Eigen::Vector2f& centre,
   const int y0 = static_cast<int>(y);
   const float fx = x - static_cast<float>(x0);
   const float fy = y - static_cast<float>(y0);
-  const float w00 = (1.0F - fx) * (1.0F - fy);
-  const float w01 = fx * (1.0F - fy);
-  const float w10 = (1.0F - fx) * fy;
-  const float w11 = fx * fy;
+  // Row by row through buffers of its own, which the compiler knows to be apart from the image.
+  const auto interpolate_row = [&](int row, std::array<float, kSide>& along) {
+    std::array<uchar, kSide + 1> pixels;
+    std::memcpy(pixels.data(), image.ptr<uchar>(row) + x0, kSide + 1);
+    std::array<float, kSide + 1> grey;
+    for (std::size_t u = 0; u <= kSide; ++u) grey[u] = static_cast<float>(pixels[u]);
+    for (std::size_t u = 0; u < kSide; ++u) along[u] = grey[u] + fx * (grey[u + 1] - grey[u]);
+  };
+  std::array<float, kSide> upper;
+  std::array<float, kSide> lower;
+  interpolate_row(y0, upper);
   for (int v = 0; v < kSide; ++v) {
-    const uchar* upper = image.ptr<uchar>(y0 + v) + x0;
-    const uchar* lower = upper + image.step[0];
-    for (int u = 0; u < kSide; ++u) {
-      values[v * kSide + u] =
-          w00 * static_cast<float>(upper[u]) + w01 * static_cast<float>(upper[u + 1]) +
-          w10 * static_cast<float>(lower[u]) + w11 * static_cast<float>(lower[u + 1]);
-    }
+    interpolate_row(y0 + v + 1, lower);
+    float* out = values.data() + v * kSide;
+    for (std::size_t u = 0; u < kSide; ++u) out[u] = upper[u] + fy * (lower[u] - upper[u]);
+    upper = lower;
   }
   return true;
 }

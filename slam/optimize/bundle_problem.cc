@@ -22,6 +22,13 @@ std::vector<int> index_by_id(const std::vector<KeyframeId>& keyframes, int next_
   return index;
 }
 
+std::vector<Pose> pose_matrices(const BundleProblem& problem) {
+  std::vector<Pose> poses;
+  poses.reserve(problem.poses.size());
+  for (const PoseBlock& block : problem.poses) poses.push_back(pose_from_block(block));
+  return poses;
+}
+
 bool is_determined(int observations, bool depth) { return observations >= (depth ? 1 : 2); }
 
 std::unique_ptr<ceres::CostFunction> make_cost(const ReprojectionTerm& term, bool refine_focal) {
@@ -56,8 +63,9 @@ bool BundleProblem::has_depth() const {
 }
 
 double BundleProblem::chi2(const BundleObservation& seen) const {
-  return seen.term.chi2(poses[static_cast<std::size_t>(seen.pose)].data(),
-                        points[static_cast<std::size_t>(seen.point)].data(), focal_factor);
+  return seen.term.chi2(pose_from_block(poses[static_cast<std::size_t>(seen.pose)]) *
+                            points[static_cast<std::size_t>(seen.point)],
+                        focal_factor);
 }
 
 BundleProblem collect_bundle(const Map& map, const Camera& camera,
@@ -174,8 +182,11 @@ int solve_bundle(BundleProblem& problem, const BundleSolve& solve) {
 int deactivate_outliers(BundleProblem& problem, double gate) {
   std::vector<int> left(problem.points.size(), 0);
   std::vector<char> depth(problem.points.size(), 0);
+  const std::vector<Pose> poses = pose_matrices(problem);
   for (BundleObservation& seen : problem.observations) {
-    const double chi2 = problem.chi2(seen);
+    const double chi2 = seen.term.chi2(poses[static_cast<std::size_t>(seen.pose)] *
+                                           problem.points[static_cast<std::size_t>(seen.point)],
+                                       problem.focal_factor);
     seen.active = std::isfinite(chi2) && chi2 <= gate * problem.threshold(seen);
     if (!seen.active) continue;
     ++left[static_cast<std::size_t>(seen.point)];
@@ -193,14 +204,12 @@ int deactivate_outliers(BundleProblem& problem, double gate) {
 double reprojection_rms_px(const BundleProblem& problem) {
   double sum = 0.0;
   int count = 0;
+  const std::vector<Pose> poses = pose_matrices(problem);
   for (const BundleObservation& seen : problem.observations) {
     if (!seen.active) continue;
-    double residuals[3];
-    seen.term.evaluate(problem.poses[static_cast<std::size_t>(seen.pose)].data(),
-                       problem.points[static_cast<std::size_t>(seen.point)].data(),
-                       problem.focal_factor, residuals, nullptr, nullptr, nullptr);
-    const double squared = residuals[0] * residuals[0] + residuals[1] * residuals[1];
-    sum += squared / (seen.term.inverse_sigma * seen.term.inverse_sigma);
+    sum += seen.term.squared_error_px(poses[static_cast<std::size_t>(seen.pose)] *
+                                          problem.points[static_cast<std::size_t>(seen.point)],
+                                      problem.focal_factor);
     ++count;
   }
   return count > 0 ? std::sqrt(sum / count) : 0.0;

@@ -160,6 +160,7 @@ PoseResult optimize_pose(const Camera& camera, const Pose& initial_cam_from_worl
     // Another round over the same observations would end where this one did.
     if (!robust && !changed) break;
   }
+  result.information = problem.linearise(result.cam_from_world, result.inlier, false).hessian;
   return result;
 }
 

@@ -31,6 +31,8 @@ struct PoseResult {
   std::vector<char> inlier;  ///< per observation, after the last round
   int num_inliers = 0;
   double rms = 0.0;  ///< of the inliers' normalised residuals
+  /// Second derivative of half the inliers' chi2 by a step of the pose (geometry/pose_system.h).
+  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
 /// Motion-only bundle adjustment: Gauss-Newton/LM with analytic Jacobians on se(3), Huber in the

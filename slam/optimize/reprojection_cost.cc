@@ -114,12 +114,14 @@ void ReprojectionTerm::evaluate(const double* pose, const double* point, double 
   }
 }
 
-double ReprojectionTerm::chi2(const double* pose, const double* point, double focal) const {
-  const double z = (ConstQuaternion(pose) * ConstVector3(point)).z() + pose[6];
-  if (!(z > 0.0)) return std::numeric_limits<double>::infinity();
-  double residuals[3] = {0.0, 0.0, 0.0};
-  evaluate(pose, point, focal, residuals, nullptr, nullptr, nullptr);
-  return residuals[0] * residuals[0] + residuals[1] * residuals[1] + residuals[2] * residuals[2];
+double ReprojectionTerm::chi2(const Eigen::Vector3d& point_cam, double focal) const {
+  if (!(point_cam.z() > 0.0)) return std::numeric_limits<double>::infinity();
+  double squared = squared_error_px(point_cam, focal);
+  if (inverse_depth > 0.0) {
+    const double disparity = baseline_fx * (1.0 / point_cam.z() - inverse_depth);
+    squared += disparity * disparity;
+  }
+  return inverse_sigma * inverse_sigma * squared;
 }
 
 bool PointPlaneCost::Evaluate(double const* const* parameters, double* residuals,

@@ -49,8 +49,15 @@ struct ReprojectionTerm {
   /// derivatives.
   void evaluate(const double* pose, const double* point, double focal, double* residuals,
                 double* by_pose, double* by_point, double* by_focal) const;
-  /// Sum of squared residuals; infinite for a point that is not in front.
-  double chi2(const double* pose, const double* point, double focal) const;
+  /// Sum of squared residuals of a point in the camera frame; infinite for one that is not in
+  /// front.
+  double chi2(const Eigen::Vector3d& point_cam, double focal) const;
+  /// Squared distance of the pixel alone, in pixels. Domain: z > 0.
+  double squared_error_px(const Eigen::Vector3d& point_cam, double focal) const {
+    const double u = focal * fx * point_cam.x() / point_cam.z() + cx - pixel.x();
+    const double v = focal * fy * point_cam.y() / point_cam.z() + cy - pixel.y();
+    return u * u + v * v;
+  }
 };
 
 /// Blocks: pose (7), point (3).

@@ -12,16 +12,16 @@ namespace planecast::slam {
 
 struct DescribeKeyframeOptions {
   double snap_px =
-      2.0;  ///< a feature so near to a landmark's patch, at its level, is that landmark's
+      2.0;  ///< a corner so near to a landmark's patch, at its level, is that landmark's
   LocaliseOptions localise;
-  PatchMatchOptions patches;
+  PatchMatchOptions patches;  ///< beyond those of the tracker
 };
 
-/// Gives ORB features to an image that was tracked by patches and is to become a keyframe.
-/// Landmarks found by their looks keep the precise positions: the feature there is moved to it, or
-/// one is added. The other landmarks about are matched by descriptor, and their features moved to
-/// where the looks agree best. `estimate`: of the tracker, in `map`. Returns the estimate over the
-/// features.
+/// Gives corners to an image that was tracked by patches and is to become a keyframe. Landmarks
+/// found by their looks keep the precise positions: the corner there is moved to it, or one is
+/// added. The tracker stops when it has found enough; here the other landmarks about are looked for
+/// as well. `estimate`: of the tracker, in `map`. Returns the estimate over the features, which
+/// have no descriptors yet (OrbExtractor::describe()).
 PoseEstimate describe_keyframe(const Map& map, const Camera& camera, const PoseEstimate& estimate,
                                const DescribeKeyframeOptions& options, ImagePreparer& preparer,
                                ImageFeatures& image);

@@ -98,6 +98,7 @@ bool MonoInitialiser::set_reference(ImageFeatures& image) {
   for (const Keypoint& keypoint : image.features->keypoints) {
     guess_.push_back(keypoint.pixel.cast<double>());
   }
+  history_.clear();
   if (options_.by_patches) tracks_.start(*image.pyramid, *image.features);
   return true;
 }
@@ -105,13 +106,45 @@ bool MonoInitialiser::set_reference(ImageFeatures& image) {
 void MonoInitialiser::match_tracks(const ImageFeatures& image, Matches& matches) {
   tracks_.follow(*image.pyramid);
   if (tracks_.tracks().size() < options_.min_track_share * tracks_.started()) return;
+  history_.emplace_back();
   for (const CornerTrack& track : tracks_.tracks()) {
     const auto r = static_cast<std::size_t>(track.keypoint);
     matches.keypoints.emplace_back(track.keypoint, kNone);
     matches.pairs.push_back({reference_->features->keypoints[r].pixel.cast<double>(),
                              camera_.undistort(track.raw.cast<double>())});
     matches.quality.push_back(1.0F - track.correlation);
+    history_.back().emplace_back(track.keypoint, matches.pairs.back().cur);
   }
+}
+
+FollowedCorners MonoInitialiser::followed() const {
+  FollowedCorners corners;
+  corners.pixels.resize(history_.size() + 1);
+  std::vector<std::size_t> next(history_.size(), 0);
+  for (const auto& [keypoint, pixel] : history_.back()) {
+    const Keypoint& seen = reference_->features->keypoints[static_cast<std::size_t>(keypoint)];
+    corners.pixels.front().push_back(seen.pixel.cast<double>());
+    corners.sigma_px.push_back(options_.two_view.sigma_px * options_.levels.scale(seen.octave));
+    for (std::size_t f = 0; f < history_.size(); ++f) {
+      while (history_[f][next[f]].first != keypoint) ++next[f];
+      corners.pixels[f + 1].push_back(history_[f][next[f]].second);
+    }
+  }
+  return corners;
+}
+
+std::optional<StartBundle> MonoInitialiser::bundle_since_reference(
+    const TwoViewResult& two_view) const {
+  const bool enough_parallax =
+      two_view.failure == TwoViewFailure::kNone ||
+      (two_view.failure == TwoViewFailure::kTooLittleParallax &&
+       two_view.parallax_deg >= options_.bundle_parallax_deg &&
+       two_view.runner_up_good < options_.bundle_runner_up_ratio * two_view.good);
+  if (!options_.by_patches || !enough_parallax) return std::nullopt;
+  std::optional<StartBundle> bundle =
+      bundle_start(camera_, followed(), two_view.cur_from_ref, options_.start_bundle);
+  if (!bundle || !bundle->good) return std::nullopt;
+  return bundle;
 }
 
 void MonoInitialiser::match_descriptors(const ImageFeatures& image, Matches& matches) {
@@ -129,7 +162,7 @@ void MonoInitialiser::match_descriptors(const ImageFeatures& image, Matches& mat
 }
 
 void MonoInitialiser::place_tracks(ImageFeatures& image, Matches& matches) {
-  Features features = preparer_.extract_raw(image, options_.features);
+  Features features = preparer_.detect(image, options_.features);
   std::vector<FoundPoint> points;
   for (std::size_t m = 0; m < matches.keypoints.size(); ++m) {
     const auto r = static_cast<std::size_t>(matches.keypoints[m].first);
@@ -137,12 +170,12 @@ void MonoInitialiser::place_tracks(ImageFeatures& image, Matches& matches) {
     point.raw = tracks_.tracks()[m].raw;
     point.pixel = matches.pairs[m].cur;
     point.octave = reference_->features->keypoints[r].octave;
-    point.descriptor = reference_->features->descriptors[r];
     points.push_back(point);
   }
   std::vector<char> taken(features.keypoints.size(), 0);
   const std::vector<int> placed = place_points(points, camera_, options_.snap_px, options_.levels,
                                                preparer_.extractor(), taken, features);
+  preparer_.extractor().describe(features);
   for (std::size_t m = 0; m < placed.size(); ++m) matches.keypoints[m].second = placed[m];
   image.features = std::make_shared<const Features>(std::move(features));
 }
@@ -185,6 +218,30 @@ TwoViewResult MonoInitialiser::solve(const std::vector<PointPair>& pairs,
                               fundamental->inlier, camera_, options_.two_view);
 }
 
+Map MonoInitialiser::two_keyframes(const ImageFeatures& image, const Matches& matches,
+                                   const TwoViewResult& two_view) const {
+  Map start;
+  start.keyframes.put(make_keyframe(*reference_, Pose::Identity(), start));
+  Keyframe second = make_keyframe(image, two_view.cur_from_ref, start);
+  second.parent = 0;
+  start.keyframes.put(second);
+  for (std::size_t m = 0; m < matches.keypoints.size(); ++m) {
+    const auto& [i, j] = matches.keypoints[m];
+    if (!two_view.points_ref[m] || j == kNone) continue;
+    const auto& keypoint = image.features->keypoints[static_cast<std::size_t>(j)];
+    add_landmark(start, *two_view.points_ref[m], color_at(image.grey_or_bgr, keypoint.raw),
+                 {{0, i}, {1, j}}, options_.levels);
+  }
+  return start;
+}
+
+bool MonoInitialiser::adjust(Map& start) {
+  BundleOptions bundle;
+  bundle.iterations = 20;
+  bundle.levels = options_.levels;
+  return global_bundle(start, camera_, bundle).rms_after_px <= options_.max_rms_px;
+}
+
 InitialiseResult MonoInitialiser::try_image(ImageFeatures& image, Map& map) {
   InitialiseResult result;
   if (!options_.by_patches && image.features == nullptr) {
@@ -205,7 +262,13 @@ InitialiseResult MonoInitialiser::try_image(ImageFeatures& image, Map& map) {
     result.reason = set_reference(image) ? "too few matches" : "too few features";
     return result;
   }
-  const TwoViewResult two_view = solve(matches.pairs, matches.quality, result.used_homography);
+  TwoViewResult two_view = solve(matches.pairs, matches.quality, result.used_homography);
+  const std::optional<StartBundle> bundle = bundle_since_reference(two_view);
+  if (bundle) {
+    two_view.failure = TwoViewFailure::kNone;
+    two_view.cur_from_ref = bundle->newest_from_ref;
+    two_view.points_ref = bundle->points_ref;
+  }
   if (two_view.failure != TwoViewFailure::kNone) {
     result.reason = two_view.failure == TwoViewFailure::kTooLittleParallax &&
                             median_shift_px(matches.pairs) > kRotationShift * camera_.width
@@ -214,26 +277,14 @@ InitialiseResult MonoInitialiser::try_image(ImageFeatures& image, Map& map) {
     return result;
   }
   if (options_.by_patches) place_tracks(image, matches);
-
-  Map start;
-  start.keyframes.put(make_keyframe(*reference_, Pose::Identity(), start));
-  Keyframe second = make_keyframe(image, two_view.cur_from_ref, start);
-  second.parent = 0;
-  start.keyframes.put(second);
-  for (std::size_t m = 0; m < matches.keypoints.size(); ++m) {
-    const auto& [i, j] = matches.keypoints[m];
-    if (!two_view.points_ref[m] || j == kNone) continue;
-    const auto& keypoint = image.features->keypoints[static_cast<std::size_t>(j)];
-    add_landmark(start, *two_view.points_ref[m], color_at(image.grey_or_bgr, keypoint.raw),
-                 {{0, i}, {1, j}}, options_.levels);
+  Map start = two_keyframes(image, matches, two_view);
+  // The frames between, which the map does not hold, have said more than its two keyframes could.
+  if (!bundle && !adjust(start)) {
+    result.reason = "unstable start";
+    return result;
   }
-  BundleOptions bundle;
-  bundle.iterations = 20;
-  bundle.levels = options_.levels;
-  const BundleResult adjusted = global_bundle(start, camera_, bundle);
   const double median_depth = start.median_depth(0);
-  if (static_cast<int>(start.landmarks.size()) < options_.min_landmarks || median_depth <= 0.0 ||
-      adjusted.rms_after_px > options_.max_rms_px) {
+  if (static_cast<int>(start.landmarks.size()) < options_.min_landmarks || median_depth <= 0.0) {
     result.reason = "unstable start";
     return result;
   }

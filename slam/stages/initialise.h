@@ -13,6 +13,7 @@
 #include "slam/features/corner_tracks.h"
 #include "slam/geometry/two_view.h"
 #include "slam/stages/prepare_image.h"
+#include "slam/stages/start_bundle.h"
 
 namespace planecast::slam {
 
@@ -31,6 +32,11 @@ struct InitialiseOptions {
   int min_landmarks = 50;
   double max_rms_px = 2.0;  ///< of the two-view bundle: a worse start is no start
   TwoViewOptions two_view;
+  /// Two views with less parallax than two_view asks for, but at least this, may still start if all
+  /// frames since the reference together fix the depths (by_patches alone).
+  double bundle_parallax_deg = 0.4;
+  double bundle_runner_up_ratio = 0.5;  ///< as TwoViewOptions::max_runner_up_ratio, for those
+  StartBundleOptions start_bundle;
   std::uint64_t seed = 1;
   ScaleLevels levels;
 };
@@ -66,9 +72,16 @@ class MonoInitialiser {
   };
   bool set_reference(ImageFeatures& image);
   void match_tracks(const ImageFeatures& image, Matches& matches);
+  /// The corners that are still followed, in every image since the reference.
+  FollowedCorners followed() const;
+  std::optional<StartBundle> bundle_since_reference(const TwoViewResult& two_view) const;
   void match_descriptors(const ImageFeatures& image, Matches& matches);
   /// Gives the image's keypoints to matches found by patches; those without one are left out (-1).
   void place_tracks(ImageFeatures& image, Matches& matches);
+  Map two_keyframes(const ImageFeatures& image, const Matches& matches,
+                    const TwoViewResult& two_view) const;
+  /// Bundle adjustment of the two keyframes; false where it does not fit.
+  bool adjust(Map& start);
   TwoViewResult solve(const std::vector<PointPair>& pairs, const std::vector<float>& quality,
                       bool& used_homography) const;
 
@@ -77,6 +90,9 @@ class MonoInitialiser {
   ImagePreparer preparer_;
   std::optional<ImageFeatures> reference_;
   CornerTracks tracks_;
+  /// (keypoint of the reference, undistorted pixel) for each image since the reference, in the
+  /// order of the tracks, of which each image has some of those of the image before.
+  std::vector<std::vector<std::pair<int, Eigen::Vector2d>>> history_;
   std::vector<Eigen::Vector2d> guess_;
 };
 

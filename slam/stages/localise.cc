@@ -30,6 +30,7 @@ PoseEstimate optimise_matches(const Map& map, const Camera& camera, const Featur
     const PoseResult result = optimize_pose(camera, prior_cam_from_world, observations);
     estimate.cam_from_world = result.cam_from_world;
     estimate.rms = result.rms;
+    estimate.information = result.information;
     for (std::size_t i = 0; i < observations.size(); ++i) {
       if (result.inlier[i] == 0) matches[keypoint_of[i]] = kNone;
     }
@@ -78,6 +79,7 @@ std::optional<PoseEstimate> localise_by_patches(const Map& map, const Camera& ca
   PoseEstimate estimate;
   estimate.cam_from_world = result.cam_from_world;
   estimate.rms = result.rms;
+  estimate.information = result.information;
   estimate.inliers = result.num_inliers;
   estimate.visible = std::move(found.tried);
   for (std::size_t i = 0; i < found.matches.size(); ++i) {

@@ -24,8 +24,10 @@ struct PoseEstimate {
   std::vector<LandmarkId> matches;  ///< per keypoint, inliers only; empty without keypoints
   std::vector<PatchMatch> patches;  ///< inliers found by their looks, without keypoints
   int inliers = 0;
-  double rms = 0.0;                 ///< normalised
-  std::vector<LandmarkId> visible;  ///< expected in the image, matched or not, ascending
+  double rms = 0.0;  ///< normalised
+  Eigen::Matrix<double, 6, 6> information =
+      Eigen::Matrix<double, 6, 6>::Zero();  ///< as in PoseResult
+  std::vector<LandmarkId> visible;          ///< expected in the image, matched or not, ascending
 };
 
 /// The landmarks that support it, in the order of the keypoints or patches.

@@ -111,22 +111,27 @@ KeyframeId KeyframeMapper::put_keyframe(Map& map, KeyframeJob& job, StageTimes& 
     const LandmarkId landmark = job.estimate.matches[k];
     if (landmark == kNone) continue;
     map.add_observation(landmark, id, static_cast<int>(k));
-    map.update_landmark_summary(landmark, options_.points.levels);
   }
   return id;
 }
 
 void KeyframeMapper::create_points(Map& map, KeyframeId id, const ImageFeatures& image,
-                                   PointMappingStats& stats) {
+                                   PointMappingStats& stats, StageTimes& times) {
+  Stopwatch watch;
+  double search_ms = 0.0;
   if (options_.search_by_patches) {
-    search_points(map, id, camera_, image.grey_or_bgr, options_.prepare.max_keypoint_depth_m,
-                  options_.search, preparer_.extractor(), stats);
+    const std::vector<Sighting> sightings = search_points(map, id, camera_, options_.search);
+    search_ms = watch.lap_ms();
+    put_sightings(map, id, camera_, image.grey_or_bgr, options_.prepare.max_keypoint_depth_m,
+                  sightings, options_.search, preparer_.extractor(), stats);
+    times.emplace_back("Keyframe Descriptors", watch.lap_ms());
   } else {
     create_landmarks(map, id, camera_, options_.rgbd, image.grey_or_bgr, options_.points, stats);
   }
   if (options_.rgbd) {
     create_landmarks_from_depth(map, id, camera_, image.grey_or_bgr, options_.points, stats);
   }
+  times.emplace_back("Triangulation", search_ms + watch.lap_ms());
 }
 
 KeyframeReport KeyframeMapper::insert(Map& map, KeyframeJob job) {
@@ -139,8 +144,8 @@ KeyframeReport KeyframeMapper::insert(Map& map, KeyframeJob job) {
   cull_landmarks(map, id, options_.rgbd, options_.points, report.points);
   if (options_.map_planes) plane_mapper_.cull_non_planar(map, id, report.planes);
   Stopwatch watch;
-  create_points(map, id, job.image, report.points);
-  report.times.emplace_back("Triangulation", watch.lap_ms());
+  create_points(map, id, job.image, report.points, report.times);
+  watch.lap_ms();
   fuse_landmarks(map, id, camera_, options_.rgbd, options_.points, report.points);
   report.times.emplace_back("Fusing", watch.lap_ms());
   if (options_.map_planes) plane_mapper_.update(map, id, report.planes);

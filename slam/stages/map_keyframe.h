@@ -57,6 +57,8 @@ class KeyframeMapper {
  public:
   KeyframeMapper(const KeyframeMapperOptions& options, const Camera& camera,
                  std::unique_ptr<PlaneSegmenter> segmenter);
+  /// Name and version of what says where planes are.
+  std::string segmentation() const { return segmenter_->name(); }
 
   /// Planes of a map that was just initialised. `images`: those of its keyframes, in order.
   KeyframeReport start(Map& map, const std::vector<ImageFeatures>& images);
@@ -69,7 +71,8 @@ class KeyframeMapper {
 
  private:
   KeyframeId put_keyframe(Map& map, KeyframeJob& job, StageTimes& times);
-  void create_points(Map& map, KeyframeId id, const ImageFeatures& image, PointMappingStats& stats);
+  void create_points(Map& map, KeyframeId id, const ImageFeatures& image, PointMappingStats& stats,
+                     StageTimes& times);
   void segment(const ImageFeatures& image, Keyframe& keyframe, StageTimes& times);
 
   KeyframeMapperOptions options_;

@@ -29,6 +29,40 @@ bool scales_agree(const Keyframe& a, const Keypoint& in_a, const Keyframe& b, co
   return ratio * slack > octave_ratio && ratio < octave_ratio * slack;
 }
 
+/// Whether enough other keyframes see a landmark at the octave of keypoint `k` or finer.
+bool seen_enough_elsewhere(const Map& map, const Keyframe& keyframe, std::size_t k,
+                           const PointMappingOptions& options) {
+  const Landmark& landmark = map.landmarks.at(keyframe.landmarks[k]);
+  if (static_cast<int>(landmark.observations.size()) <= options.redundant_observers) return false;
+  const int octave = keyframe.features->keypoints[k].octave;
+  int observers = 0;
+  for (const Observation& other : landmark.observations) {
+    if (other.keyframe == keyframe.id) continue;
+    const int other_octave = map.keyframes.at(other.keyframe)
+                                 .features->keypoints[static_cast<std::size_t>(other.keypoint)]
+                                 .octave;
+    observers += other_octave <= octave + 1;
+    if (observers >= options.redundant_observers) return true;
+  }
+  return false;
+}
+
+/// Whether nearly all of the keyframe's landmarks are seen enough elsewhere.
+bool is_redundant(const Map& map, const Keyframe& keyframe, const PointMappingOptions& options) {
+  const auto total =
+      keyframe.landmarks.size() - static_cast<std::size_t>(std::count(
+                                      keyframe.landmarks.begin(), keyframe.landmarks.end(), kNone));
+  // Most keyframes are needed, which a few landmarks show.
+  const double may_be_needed = (1.0 - options.redundant_share) * static_cast<double>(total);
+  int needed = 0;
+  for (std::size_t k = 0; k < keyframe.landmarks.size(); ++k) {
+    if (keyframe.landmarks[k] == kNone || seen_enough_elsewhere(map, keyframe, k, options))
+      continue;
+    if (++needed >= may_be_needed) return false;
+  }
+  return true;
+}
+
 std::vector<LandmarkId> landmarks_in(const Keyframe& keyframe) {
   std::vector<LandmarkId> ids;
   for (const LandmarkId id : keyframe.landmarks) {
@@ -203,8 +237,12 @@ void fuse_landmarks(Map& map, KeyframeId id, const Camera& camera, bool rgbd,
   const auto most =
       static_cast<std::size_t>(rgbd ? options.neighbours_rgbd : options.neighbours_mono);
   std::vector<KeyframeId> targets = best_neighbours(map, id, most);
-  const std::vector<KeyframeId> direct = targets;
-  for (const KeyframeId neighbour : direct) {
+  // Neighbours of the best few are enough: their own neighbours overlap.
+  constexpr std::size_t kAsked = 5;
+  const std::vector<KeyframeId> best(
+      targets.begin(),
+      targets.begin() + static_cast<std::ptrdiff_t>(std::min(kAsked, targets.size())));
+  for (const KeyframeId neighbour : best) {
     for (const KeyframeId second : best_neighbours(map, neighbour, 5)) {
       if (second != id) targets.push_back(second);
     }
@@ -231,28 +269,9 @@ void fuse_landmarks(Map& map, KeyframeId id, const Camera& camera, bool rgbd,
 void cull_keyframes(Map& map, KeyframeId keyframe, const PointMappingOptions& options,
                     PointMappingStats& stats) {
   for (const auto& [id, shared] : map.covisible(keyframe)) {
-    if (id <= 1) continue;
-    const Keyframe& candidate = map.keyframes.at(id);
-    int total = 0;
-    int redundant = 0;
-    for (std::size_t k = 0; k < candidate.landmarks.size(); ++k) {
-      if (candidate.landmarks[k] == kNone) continue;
-      ++total;
-      const int octave = candidate.features->keypoints[k].octave;
-      int observers = 0;
-      for (const Observation& other : map.landmarks.at(candidate.landmarks[k]).observations) {
-        if (other.keyframe == id) continue;
-        const int other_octave = map.keyframes.at(other.keyframe)
-                                     .features->keypoints[static_cast<std::size_t>(other.keypoint)]
-                                     .octave;
-        observers += other_octave <= octave + 1;
-      }
-      redundant += observers >= options.redundant_observers;
-    }
-    if (redundant > options.redundant_share * total) {
-      map.erase_keyframe(id);
-      ++stats.keyframes_culled;
-    }
+    if (id <= 1 || !is_redundant(map, map.keyframes.at(id), options)) continue;
+    map.erase_keyframe(id);
+    ++stats.keyframes_culled;
   }
 }
 

@@ -43,8 +43,8 @@ ImageFeatures ImagePreparer::read(const FrameInput& frame) const {
   return image;
 }
 
-Features ImagePreparer::extract_raw(const ImageFeatures& image, int limit) {
-  return extractor_.extract(image.pyramid->levels.front(), camera_, limit);
+Features ImagePreparer::detect(const ImageFeatures& image, int limit) {
+  return extractor_.detect(image.pyramid->levels.front(), camera_, limit);
 }
 
 void ImagePreparer::add_depth(const ImageFeatures& image, Features& features) const {
@@ -56,7 +56,7 @@ void ImagePreparer::add_depth(const ImageFeatures& image, Features& features) co
 
 void ImagePreparer::extract(ImageFeatures& image, int limit) {
   Stopwatch watch;
-  Features features = extract_raw(image, limit);
+  Features features = extractor_.extract(image.pyramid->levels.front(), camera_, limit);
   add_depth(image, features);
   image.features = std::make_shared<const Features>(std::move(features));
   image.prepare_ms += watch.lap_ms();

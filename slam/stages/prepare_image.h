@@ -41,8 +41,8 @@ class ImagePreparer {
   ImageFeatures read(const FrameInput& frame) const;
   /// ORB features with depth; `limit` as in OrbExtractor::extract.
   void extract(ImageFeatures& image, int limit = 0);
-  /// Features that are not shared yet, for more to be added by OrbExtractor::append.
-  Features extract_raw(const ImageFeatures& image, int limit = 0);
+  /// Corners that are not described yet, for more to be added by OrbExtractor::append.
+  Features detect(const ImageFeatures& image, int limit = 0);
   void add_depth(const ImageFeatures& image, Features& features) const;
   OrbExtractor& extractor() { return extractor_; }
 

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "slam/features/place_points.h"
 #include "slam/features/pyramid.h"
 #include "slam/features/warp_patch.h"
 #include "slam/geometry/change_of_view.h"
@@ -31,13 +30,6 @@ struct InverseDepths {
   double least = 0.0;
   double median = 0.0;
   double most = 0.0;
-};
-
-/// A keypoint of a neighbour that was found in the new keyframe.
-struct Sighting {
-  std::vector<Observation> seen;  ///< by the neighbours, the first of which gave the position
-  FoundPoint point;
-  Eigen::Vector3d position;  ///< world
 };
 
 std::optional<InverseDepths> depth_range(const Map& map, const Keyframe& keyframe,
@@ -85,16 +77,16 @@ class EpipolarSearch {
   std::optional<Sighting> find(int k) {
     const Keypoint& keypoint = neighbour_.features->keypoints[static_cast<std::size_t>(k)];
     const Eigen::Vector3d ray = camera_.ray(keypoint.pixel.cast<double>());
-    const Eigen::Vector3d middle = ray / range_.median;
-    const auto view =
-        change_of_view(camera_, middle, Eigen::Vector3d::UnitZ(), cam_from_neighbour_);
-    if (!view) return std::nullopt;
     std::optional<Line> line = line_of(ray);
     if (!line) return std::nullopt;
     const double reach = kStepPx * options_.max_steps *
                          options_.points.levels.scale(keypoint.octave) *
                          (1 << options_.coarser_levels);
     line->shorten(reach);
+    if (!meets_image(*line)) return std::nullopt;
+    const auto view =
+        change_of_view(camera_, ray / range_.median, Eigen::Vector3d::UnitZ(), cam_from_neighbour_);
+    if (!view) return std::nullopt;
     // A long line is searched at a coarser level, and the place then followed to the finer ones.
     std::optional<Eigen::Vector2f> raw;
     for (int coarser = coarser_levels(*line, keypoint); coarser >= 0; --coarser) {
@@ -147,6 +139,12 @@ class EpipolarSearch {
     return Line{camera_.project(far_point), camera_.project(middle), camera_.project(near_point)};
   }
 
+  /// Whether one of its ends or its middle is in the image.
+  bool meets_image(const Line& line) const {
+    return camera_.contains(line.middle) || camera_.contains(line.begin) ||
+           camera_.contains(line.end);
+  }
+
   /// Levels above the keypoint's own at which the line is short enough.
   int coarser_levels(const Line& line, const Keypoint& keypoint) const {
     double steps = line.length() / (kStepPx * options_.points.levels.scale(keypoint.octave));
@@ -159,6 +157,7 @@ class EpipolarSearch {
   std::optional<Eigen::Vector2f> search(const Line& line, const WarpedPatch& patch) {
     const double length = line.length() / (1 << patch.level);
     const int steps = static_cast<int>(std::ceil(length / kStepPx)) + 1;
+    const QuickTemplate quick(patch.looks);
     places_.clear();
     scores_.clear();
     for (int s = 0; s <= steps; ++s) {
@@ -167,8 +166,7 @@ class EpipolarSearch {
       if (!camera_.contains(pixel)) continue;
       const Eigen::Vector2d raw = camera_.has_distortion() ? camera_.distort(pixel) : pixel;
       places_.push_back(raw.cast<float>());
-      scores_.push_back(
-          correlate(patch.looks, level_of(patch), at_level(places_.back(), patch.level)));
+      scores_.push_back(quick.correlate(level_of(patch), at_level(places_.back(), patch.level)));
     }
     return unambiguous_best();
   }
@@ -203,7 +201,6 @@ class EpipolarSearch {
     result.point.raw = seen.raw;
     result.point.pixel = seen.pixel.cast<double>();
     result.point.octave = keypoint.octave;
-    result.point.descriptor = neighbour_.features->descriptors[static_cast<std::size_t>(k)];
     result.position = *position;
     return result;
   }
@@ -244,6 +241,7 @@ std::vector<int> add_keypoints(const std::vector<Sighting>& sightings, const Cam
   extractor.set_image(keyframe.pyramid->levels.front());
   std::vector<int> placed = place_points(points, camera, options.snap_px, options.points.levels,
                                          extractor, taken, features);
+  extractor.describe(features);
   keyframe.landmarks.resize(features.keypoints.size(), kNone);
   keyframe.labels.resize(features.keypoints.size(), 0);
   for (const int k : placed) {
@@ -262,15 +260,14 @@ std::vector<int> add_keypoints(const std::vector<Sighting>& sightings, const Cam
 
 }  // namespace
 
-void search_points(Map& map, KeyframeId id, const Camera& camera, const cv::Mat& image,
-                   double max_keypoint_depth_m, const SearchPointsOptions& options,
-                   OrbExtractor& extractor, PointMappingStats& stats) {
+std::vector<Sighting> search_points(const Map& map, KeyframeId id, const Camera& camera,
+                                    const SearchPointsOptions& options) {
   std::vector<Sighting> sightings;
   const Keyframe& keyframe = map.keyframes.at(id);
   int searched = 0;
   for (const KeyframeId neighbour_id : best_neighbours(map, id, 20)) {
     const Keyframe& neighbour = map.keyframes.at(neighbour_id);
-    if (neighbour.pyramid == nullptr || keyframe.pyramid == nullptr ||
+    if (neighbour.pyramid == nullptr ||
         !wide_enough(map, keyframe, neighbour, false, options.points)) {
       continue;
     }
@@ -282,7 +279,13 @@ void search_points(Map& map, KeyframeId id, const Camera& camera, const cv::Mat&
     }
     if (++searched == options.neighbours) break;
   }
-  if (sightings.empty()) return;
+  return sightings;
+}
+
+void put_sightings(Map& map, KeyframeId id, const Camera& camera, const cv::Mat& image,
+                   double max_keypoint_depth_m, const std::vector<Sighting>& sightings,
+                   const SearchPointsOptions& options, OrbExtractor& extractor,
+                   PointMappingStats& stats) {
   const std::vector<int> placed = add_keypoints(sightings, camera, max_keypoint_depth_m, options,
                                                 extractor, map.keyframes.at(id));
   for (std::size_t i = 0; i < sightings.size(); ++i) {

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <opencv2/core.hpp>
+#include <vector>
 
 #include "slam/data/camera.h"
 #include "slam/data/map.h"
 #include "slam/features/orb.h"
+#include "slam/features/place_points.h"
 #include "slam/stages/map_points.h"
 
 namespace planecast::slam {
@@ -22,15 +25,27 @@ struct SearchPointsOptions {
   PointMappingOptions points;
 };
 
-/// New landmarks of `keyframe` by the looks of its neighbours' keypoints: the surroundings of each
-/// one without a landmark are searched along its epipolar line in the new keyframe, between depths
-/// that the neighbour's landmarks suggest, and aligned to a fraction of a pixel. Needs no detector
-/// to fire twice at one place, so that it works where noise or blur make it fail. The keyframe gets
-/// keypoints for what was found, with depth from its depth image where it has one. Precondition:
-/// nobody else holds the keyframe's features for what they were, and its image pyramid is there.
-/// `image` gives the colours.
-void search_points(Map& map, KeyframeId keyframe, const Camera& camera, const cv::Mat& image,
-                   double max_keypoint_depth_m, const SearchPointsOptions& options,
-                   OrbExtractor& extractor, PointMappingStats& stats);
+/// A keypoint of a neighbour that was found in the new keyframe.
+struct Sighting {
+  std::vector<Observation> seen;  ///< by the neighbours, the first of which gave the position
+  FoundPoint point;               ///< in the new keyframe
+  Eigen::Vector3d position;       ///< world
+};
+
+/// What can be seen anew in `keyframe`, by the looks of its neighbours' keypoints: the surroundings
+/// of each one without a landmark are searched along its epipolar line in the new keyframe, between
+/// depths that the neighbour's landmarks suggest, and aligned to a fraction of a pixel. Needs no
+/// detector to fire twice at one place, so that it works where noise or blur make it fail.
+/// Precondition: the keyframe's image pyramid is there.
+std::vector<Sighting> search_points(const Map& map, KeyframeId keyframe, const Camera& camera,
+                                    const SearchPointsOptions& options);
+
+/// Makes landmarks of them. The keyframe gets keypoints for what was found, with depth from its
+/// depth image where it has one, and a descriptor for each keypoint that had none. Precondition:
+/// nobody else holds the keyframe's features for what they were. `image` gives the colours.
+void put_sightings(Map& map, KeyframeId keyframe, const Camera& camera, const cv::Mat& image,
+                   double max_keypoint_depth_m, const std::vector<Sighting>& sightings,
+                   const SearchPointsOptions& options, OrbExtractor& extractor,
+                   PointMappingStats& stats);
 
 }  // namespace planecast::slam

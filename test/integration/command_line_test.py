@@ -196,7 +196,7 @@ class Errors(unittest.TestCase):
         for arguments, words in (
             (("run", "nowhere"), ["nowhere", "no such"]),
             (("track", SEQUENCE, "-o", WORK / "file"), [str(WORK / "file")]),
-            (("segment", photo, "-o", WORK / "x"), [photo.name, "depth"]),
+            (("segment", photo, "--segmentation", "depth", "-o", WORK / "x"), [photo.name, "depth"]),
             (("render", SEQUENCE, "--reconstruction", "nowhere", "-o", WORK / "x"), ["nowhere"]),
             (("model", "README.md"), ["README.md"]),
             (("benchmark", "nowhere.yaml", "-o", WORK / "x"), ["nowhere.yaml"]),

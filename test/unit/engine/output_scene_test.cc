@@ -6,7 +6,6 @@
 
 #include "engine/output/ear_clip.h"
 #include "engine/output/match_move.h"
-#include "engine/output/report.h"
 #include "engine/output/report_svg.h"
 #include "test/unit/engine/output_test_files.h"
 
@@ -283,37 +282,6 @@ TEST(MatchMove, SameInputSameBytes) {
   write_match_move(sample_scene(), folder / "a.glb");
   write_match_move(sample_scene(), folder / "b.glb");
   EXPECT_TRUE(read_file(folder / "a.glb") == read_file(folder / "b.glb"));
-}
-
-TEST(Report, IsSelfContainedAndEscaped) {
-  const TestFolder folder;
-  Reconstruction scene = sample_scene();
-  scene.warnings = {"camera <guessed> & so on"};
-  ReportInput input;
-  input.title = "a <b> run";
-  input.stills.push_back({"frame 3", cv::Mat(1200, 1600, CV_8UC3, cv::Scalar(1, 2, 3))});
-  input.facts.emplace_back("Sequence", "room");
-  input.links = {"augmented.mp4"};
-  write_report(scene, input, folder / "report.html");
-  const std::string html = read_file(folder / "report.html");
-  for (const char* expected :
-       {"a &lt;b&gt; run", "camera &lt;guessed&gt; &amp; so on", "data:image/jpeg;base64,", "<svg",
-        "plane 4, floor", "29 of 30 (96.7 %)", "Sequence", "href=\"augmented.mp4\"", "viewport"}) {
-    EXPECT_NE(html.find(expected), std::string::npos) << expected;
-  }
-  for (const char* outside : {"http://", "https://", "<script", "<link", "@import", "url("}) {
-    EXPECT_EQ(html.find(outside), std::string::npos) << outside;
-  }
-}
-
-TEST(Report, EmptyReconstructionHasAReport) {
-  const TestFolder folder;
-  Reconstruction scene;
-  scene.camera = test_camera();
-  write_report(scene, {}, folder / "report.html");
-  const std::string html = read_file(folder / "report.html");
-  EXPECT_EQ(html.find("nan"), std::string::npos);
-  EXPECT_EQ(html.find("inf\""), std::string::npos);
 }
 
 TEST(Report, TopViewPutsTheViewingDirectionUpAndRightRight) {

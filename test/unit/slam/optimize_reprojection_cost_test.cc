@@ -139,10 +139,10 @@ TEST(ReprojectionCost, IsZeroAtTheTruthAndFlatBehindTheCamera) {
   const Eigen::Vector3d point(0.3, -0.2, 4.0);
   const ReprojectionTerm term(camera, 0.08, camera.project(pose * point), 1.0, (pose * point).z());
   const PoseBlock block = block_from_pose(pose);
-  EXPECT_LT(term.chi2(block.data(), point.data(), 1.0), 1e-18);
+  EXPECT_LT(term.chi2(pose_from_block(block) * point, 1.0), 1e-18);
 
   const Eigen::Vector3d behind(0.0, 0.0, -4.0);
-  EXPECT_TRUE(std::isinf(term.chi2(block.data(), behind.data(), 1.0)));
+  EXPECT_TRUE(std::isinf(term.chi2(pose_from_block(block) * behind, 1.0)));
   double residuals[3], by_pose[21], by_point[9];
   term.evaluate(block.data(), behind.data(), 1.0, residuals, by_pose, by_point, nullptr);
   for (const double derivative : by_pose) EXPECT_EQ(derivative, 0.0);

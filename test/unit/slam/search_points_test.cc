@@ -83,7 +83,9 @@ void expect_landmarks_on_the_plane(const Camera& camera) {
   Map map = two_keyframes(camera, first, second, moved);
   const std::size_t before = map.landmarks.size();
   PointMappingStats stats;
-  search_points(map, 1, camera, second.grey_or_bgr, 0.0, {}, preparer.extractor(), stats);
+  const std::vector<Sighting> sightings = search_points(map, 1, camera, {});
+  put_sightings(map, 1, camera, second.grey_or_bgr, 0.0, sightings, {}, preparer.extractor(),
+                stats);
 
   EXPECT_EQ(map.landmarks.size() - before, static_cast<std::size_t>(stats.triangulated));
   // Of some 400 free corners in the first, those that the second sees too.
@@ -102,6 +104,7 @@ void expect_landmarks_on_the_plane(const Camera& camera) {
   const Keyframe& keyframe = map.keyframes.at(1);
   EXPECT_EQ(keyframe.landmarks.size(), keyframe.features->keypoints.size());
   EXPECT_EQ(keyframe.labels.size(), keyframe.features->keypoints.size());
+  EXPECT_EQ(keyframe.features->descriptors.size(), keyframe.features->keypoints.size());
 }
 
 TEST(SearchPoints, FindsThePlaneWhereOnlyOneImageHasCorners) {

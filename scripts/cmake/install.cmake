@@ -40,12 +40,12 @@ install(DIRECTORY slam render engine COMPONENT development
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/planecast FILES_MATCHING PATTERN *.h)
 install(EXPORT planecast-targets NAMESPACE planecast:: DESTINATION ${package_dir}
         COMPONENT development)
-configure_package_config_file(cmake/planecast-config.cmake.in
+configure_package_config_file(scripts/cmake/planecast-config.cmake.in
   ${PROJECT_BINARY_DIR}/planecast-config.cmake INSTALL_DESTINATION ${package_dir}
   PATH_VARS CMAKE_INSTALL_DATADIR)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/planecast-config-version.cmake
   COMPATIBILITY SameMinorVersion)
-install(FILES ${PROJECT_BINARY_DIR}/planecast-config.cmake cmake/dependencies.cmake
+install(FILES ${PROJECT_BINARY_DIR}/planecast-config.cmake scripts/cmake/dependencies.cmake
               ${PROJECT_BINARY_DIR}/planecast-config-version.cmake
         DESTINATION ${package_dir} COMPONENT development)
 

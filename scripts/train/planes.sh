@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# Makes assets/network/planes.onnx anew: draws the training rooms, trains, exports, evaluates. What went into
+# it is recorded beside it. See README.md. Usage: planes.sh [FOLDER for shards and checkpoints]
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+
+work=${1:-out/network}
+python=/usr/bin/python3
+build=build/release
+tools=$build/scripts/train
+shards=16
+rooms_per_shard=334
+views=3
+
+[ -f $build/build.ninja ] || cmake --preset release
+cmake --build $build --target make_training_set evaluate_planes
+mkdir -p "$work" assets/network
+
+shard() { # NAME FIRST_SEED ROOMS VIEWS TEXTURES
+  [ -f "$work/$1.bin" ] && return
+  $tools/make_training_set "$work/$1.part" "$2" "$3" "$4" "$5"
+  mv "$work/$1.part" "$work/$1.bin"
+}
+shard validation 800000 300 1 800000
+for i in $(seq 0 $((shards - 1))); do
+  shard "$(printf 'train_%02d' "$i")" $((i * rooms_per_shard)) $rooms_per_shard $views "$i"
+done
+
+train() {
+  $python scripts/train/train_planes.py --shards "$work/train_*.bin" \
+    --validation "$work/validation.bin" "$@"
+}
+@TRAIN@
+$python scripts/train/export_planes.py "$work/full.pt" assets/network/planes.onnx
+
+{
+  echo "Plane network, made by scripts/train/planes.sh"
+  echo "training: $((shards * rooms_per_shard)) rooms (seeds from 0), $views views each, 192x144"
+  @RECORD@
+  for rooms in 20 500; do
+    $tools/evaluate_planes assets/network/planes.onnx held-out $rooms | tail -1
+  done
+} | tee assets/network/planes.txt
