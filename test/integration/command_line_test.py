@@ -76,6 +76,12 @@ class Help(unittest.TestCase):
                 if option != "--help":
                     self.assertIn(f"\\fB{option}", page, path)
 
+    def test_values_of_options(self):
+        text = planecast("calibrate", "--help").stdout
+        for words in ("--frames A:B", "--board chessboard|charuco", "--dictionary NAME",
+                      "(3 to 500) (default: 40)"):
+            self.assertIn(words, text)
+
     def test_version(self):
         self.assertRegex(planecast("--version").stdout, r"^planecast \d+\.\d+\.\d+\n$")
 
