@@ -23,7 +23,8 @@ void write_png(const cv::Mat& image, const std::filesystem::path& path, int comp
 std::string png_data_uri(const cv::Mat& image) {
   std::vector<unsigned char> bytes;
   if (image.empty() || !cv::imencode(".png", image, bytes)) return "data:,";
-  return "data:image/png;base64," + base64(bytes);
+  return "data:image/png;base64," +
+         base64({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 std::string jpeg_data_uri(const cv::Mat& image, int quality) {
