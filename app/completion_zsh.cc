@@ -24,15 +24,10 @@ std::string function_of(const CLI::App& command) {
 
 /// ":message:action" of a value.
 std::string action_of(const OptionText& text) {
+  const std::string words = CLI::detail::join(text.choices, " ");
   std::string action = " ";
-  if (!text.choices.empty() && text.takes_file) {
-    action = "_alternative 'words:word:(" + CLI::detail::join(text.choices, " ") +
-             ")' 'files:file:_files'";
-    return ":" + in_quotes(text.value) + ":{" + CLI::detail::find_and_replace(action, "'", "'\\''") +
-           "}";
-  }
-  if (!text.choices.empty()) action = "(" + CLI::detail::join(text.choices, " ") + ")";
-  if (text.takes_file) action = "_files";
+  if (!words.empty()) action = "(" + words + ")";
+  if (text.takes_file) action = words.empty() ? "_files" : " _planecast_or_files " + words;
   if (text.takes_folder) action = "_files -/";
   return ":" + in_quotes(text.value) + ":" + action;
 }
@@ -87,11 +82,21 @@ std::string functions(const CLI::App& command) {
 }  // namespace
 
 std::string zsh_completion(const CLI::App& root) {
-  return "#compdef planecast\n# Zsh completion of planecast, written by `planecast completion "
-         "zsh`.\n\n" +
-         functions(root) +
-         "if [ \"$funcstack[1]\" = \"_planecast\" ]; then\n  _planecast \"$@\"\nelse\n"
-         "  compdef _planecast planecast\nfi\n";
+  return R"(#compdef planecast
+# Zsh completion of planecast, written by `planecast completion zsh`.
+
+_planecast_or_files() {
+  compadd -- "$@"
+  _files
+}
+
+)" + functions(root) +
+         R"(if [ "$funcstack[1]" = "_planecast" ]; then
+  _planecast "$@"
+else
+  compdef _planecast planecast
+fi
+)";
 }
 
 }  // namespace planecast::app

@@ -59,6 +59,7 @@ std::string command_section(const CLI::App& command) {
 std::string man_page(const CLI::App& root, const std::string& version) {
   std::ostringstream page;
   page << ".TH PLANECAST 1 \"\" \"planecast " << version << "\" \"User Commands\"\n"
+       << ".ad l\n"  // long names of options leave no room for even margins
        << ".SH NAME\nplanecast \\- put glTF objects on the planes of a recorded image sequence\n"
        << ".SH SYNOPSIS\n.B " << roff(usage_of(root)) << "\n"
        << ".SH DESCRIPTION\n"

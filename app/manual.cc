@@ -12,6 +12,8 @@ namespace {
 
 constexpr int kColumn = 30;
 constexpr int kWidth = 96;
+/// Choices that are longer together stand in the description.
+constexpr std::size_t kLongestValue = 40;
 
 std::string join(const std::vector<std::string>& words, const std::string& between) {
   return CLI::detail::join(words, between);
@@ -93,19 +95,25 @@ OptionText describe_option(const CLI::Option& option) {
   text.description = option.get_description();
   if (option.get_type_size() == 0) return text;
 
-  // "MODE:{mono,rgbd}" or "N:INT in [1 - 256]": CLI11 appends what the checks say.
+  // "MODE:{mono,rgbd}", "N:INT in [1 - 256]", "A:B": CLI11 appends what the checks say.
   const std::string type = option.get_type_name();
-  const std::size_t colon = type.find(':');
-  text.value = type.substr(0, colon);
-  const std::string check = colon == std::string::npos ? "" : type.substr(colon + 1);
-  if (check.starts_with('{')) {
-    text.choices = CLI::detail::split(check.substr(1, check.size() - 2), ',');
-    if (option.nonpositional()) text.value = join(text.choices, "|");
-  } else if (const std::size_t range = check.find('['); range != std::string::npos) {
-    const std::size_t end = check.find(']', range);
-    const std::string limits = check.substr(range + 1, end - range - 1);
+  text.value = type;
+  if (const std::size_t list = type.find(":{"); list != std::string::npos) {
+    text.value = type.substr(0, list);
+    text.choices = CLI::detail::split(type.substr(list + 2, type.size() - list - 3), ',');
+    const std::string words = join(text.choices, "|");
+    if (words.size() > kLongestValue) {
+      text.description += ": " + join(text.choices, ", ");
+    } else if (option.nonpositional()) {
+      text.value = words;
+    }
+  } else if (const std::size_t range = type.find(" in ["); range != std::string::npos) {
+    text.value = type.substr(0, type.find(':'));
+    const std::string limits = type.substr(range + 5, type.find(']', range) - range - 5);
     const std::size_t dash = limits.find(" - ");
     text.description += " (" + limits.substr(0, dash) + " to " + limits.substr(dash + 3) + ")";
+  } else if (type.ends_with(":NONNEGATIVE") || type.ends_with(":POSITIVE")) {
+    text.value = type.substr(0, type.rfind(':'));
   }
   for (const std::string& word : choices_named(text.value)) text.choices.push_back(word);
   text.takes_file = text.value.find("FILE") != std::string::npos || text.value == "SEQUENCE";

@@ -70,7 +70,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libplanecast-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "planecast (= ${PROJECT_VERSION}), libopencv-dev, libopencv-contrib-dev, libeigen3-dev, \
-libceres-dev, libflann-dev, liblz4-dev, libglm-dev, libtinygltf-dev, libdraco-dev, \
+libceres-dev, libflann-dev, libimgui-dev, liblz4-dev, libglm-dev, libtinygltf-dev, libdraco-dev, \
 libmeshoptimizer-dev, libwebp-dev, libstb-dev, libspdlog-dev, libfmt-dev, nlohmann-json3-dev, \
 libyaml-cpp-dev, libavcodec-dev, libavformat-dev, libavutil-dev, libswscale-dev, pkg-config")
 include(CPack)

@@ -183,9 +183,10 @@ PartitionName=all Nodes=localhost Default=YES MaxTime=INFINITE State=UP
         self.wait(lambda: "idle" in self.sinfo(), "the node")
 
     def daemon(self, name, *arguments):
-        log = open(self.folder / f"{name}.out", "w", encoding="utf-8")
-        self.daemons.append(subprocess.Popen([shutil.which(name) or f"/usr/sbin/{name}", *arguments],
-                                             env=self.env, stdout=log, stderr=log))
+        with open(self.folder / f"{name}.out", "w", encoding="utf-8") as log:
+            self.daemons.append(
+                subprocess.Popen([shutil.which(name) or f"/usr/sbin/{name}", *arguments],
+                                 env=self.env, stdout=log, stderr=log))
 
     def sinfo(self):
         done = subprocess.run(["sinfo", "--noheader", "--format=%T"], env=self.env, text=True,

@@ -76,6 +76,12 @@ class Help(unittest.TestCase):
                 if option != "--help":
                     self.assertIn(f"\\fB{option}", page, path)
 
+    def test_values_of_options(self):
+        text = planecast("calibrate", "--help").stdout
+        for words in ("--frames A:B", "--board chessboard|charuco", "--dictionary NAME",
+                      "(3 to 500) (default: 40)"):
+            self.assertIn(words, text)
+
     def test_version(self):
         self.assertRegex(planecast("--version").stdout, r"^planecast \d+\.\d+\.\d+\n$")
 
@@ -202,7 +208,7 @@ class Errors(unittest.TestCase):
             (("benchmark", "nowhere.yaml", "-o", WORK / "x"), ["nowhere.yaml"]),
             (("evaluate", "planes", "--reconstruction", WORK, "--groundtruth", SEQUENCE), [str(WORK)]),
             (("synth", "--list", "--json", WORK / "no" / "folder.json"), ["folder.json"]),
-            (("calibrate", SEQUENCE, "--squares", "10x7"), [str(SEQUENCE), "0 frames"]),
+            (("calibrate", SEQUENCE, "--squares", "10x7", "--no-progress"), [str(SEQUENCE), "0 frames"]),
         ):
             with self.subTest(arguments=arguments):
                 self.refuse(*arguments, words=words)

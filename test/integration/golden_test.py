@@ -89,13 +89,13 @@ class Check(unittest.TestCase):
         self.assertIn("1 of 2 pictures", done.stderr)
 
     def test_another_size_is_a_difference(self):
-        text = CASE.replace("mode: rgbd", "mode: rgbd\n    size: 80x60")
+        text = CASE.replace("mode: rgbd", "mode: rgbd\n    size: 128x96")
         (SUITE / "golden.yaml").write_text(text, encoding="utf-8")
         try:
             done = check(expect=1)
         finally:
             (SUITE / "golden.yaml").write_text(CASE, encoding="utf-8")
-        self.assertIn("000004.png is 160x120, the picture drawn 80x60", done.stderr)
+        self.assertIn("000004.png is 160x120, the picture drawn 128x96", done.stderr)
 
     def test_a_damaged_expected_picture(self):
         (SUITE / "expected" / "block" / "000012.png").write_bytes(b"no picture")

@@ -34,21 +34,20 @@ def run(*command, expect=0, **options):
 def setUpModule():
     empty_work_folder()
     run("cmake", "--install", BUILD, "--prefix", PREFIX)
+    planecast("synth", "tabletop", "-o", SEQUENCE, "--width", 160, "--height", 120, "--count", 16)
+
+
+def planecast(*arguments):
+    """The installed one, from an empty folder, so that nothing of the source is found by chance."""
+    env = {"PATH": "/usr/bin:/bin", "HOME": str(WORK)}
+    return run(PREFIX / "bin" / "planecast", *arguments, cwd=WORK, env=env)
 
 
 class Installed(unittest.TestCase):
-    """From an empty folder, so that nothing of the source tree is found by chance."""
-
-    def planecast(self, *arguments):
-        env = {"PATH": "/usr/bin:/bin", "HOME": str(WORK)}
-        return run(PREFIX / "bin" / "planecast", *arguments, cwd=WORK, env=env)
-
     def test_finds_its_assets(self):
-        self.planecast("synth", "tabletop", "-o", SEQUENCE, "--width", 160, "--height", 120,
-                       "--count", 16)
-        done = self.planecast("run", SEQUENCE, "-o", WORK / "run", "--mode", "rgbd", "--json", "-")
+        done = planecast("run", SEQUENCE, "-o", WORK / "run", "--mode", "rgbd", "--json", "-")
         self.assertGreater(json.loads(done.stdout)["rendering"]["with_content"], 0)
-        self.planecast("golden", "init", WORK / "golden")
+        planecast("golden", "init", WORK / "golden")
         run(sys.executable, PREFIX / "bin" / "planecast-batch", "--help")
 
     def test_manual_and_completions_are_in_place(self):
@@ -62,8 +61,6 @@ class Installed(unittest.TestCase):
 
     def test_another_program_links_with_it(self):
         folder = WORK / "consumer"
-        if not SEQUENCE.exists():
-            self.test_finds_its_assets()
         run("cmake", "-S", ROOT / "test/integration/consumer", "-B", folder,
             f"-DCMAKE_PREFIX_PATH={PREFIX}", "-DCMAKE_BUILD_TYPE=Release")
         run("cmake", "--build", folder)

@@ -6,29 +6,65 @@ Needs zsh, fish, mandoc and groff. Bash is tested in command_line_test.py.
 """
 
 import os
+import pty
+import select
 import subprocess
 import sys
+import time
 import unittest
 
 from cli import PLANECAST, ROOT, WORK, empty_work_folder, planecast
 
-# Zsh completes only for someone who types: a pseudo-terminal of its own, where listing is turned
-# into lines between marks.
-ZSH = r"""
-zmodload zsh/zpty
-zpty shell zsh -f -i
-zpty -w shell "PS1= PS2= PROMPT_EOL_MARK="
-zpty -w shell "autoload -Uz compinit && compinit -u -D"
-zpty -w shell "compadd() { local -a found; builtin compadd -O found \"\$@\"; print -rl -- OFFER\${^found}; builtin compadd \"\$@\" }"
-zpty -w shell "source $1"
-zpty -w shell "bindkey '^I' list-choices; print READY"
-zpty -r -m shell line "*READY*" || exit 3
-zpty -w -n shell "$2"$'\t'
-sleep 3
-zpty -w -n shell $'\x15'"print ENDED"$'\n'
-while zpty -r shell line; do print -r -- "$line"; [[ $line == *ENDED ]] && break; done
-zpty -d shell
+# Zsh completes only for someone who types. What it would offer is printed on lines of its own.
+ZSH_SETUP = r"""
+PS1= PS2= PROMPT_EOL_MARK=
+autoload -Uz compinit && compinit -u -D
+compadd() {
+  if (( ${@[(I)-[OAD]]} )); then builtin compadd "$@"; return; fi
+  local -a found
+  builtin compadd -O found "$@"
+  print -rl -- "" OFFER${^found}
+  builtin compadd "$@"
+}
+source planecast.zsh
+cd %s
 """
+
+
+class TypingZsh:
+    """An interactive Zsh on a terminal of its own."""
+
+    def __init__(self):
+        self.terminal, side = pty.openpty()
+        self.process = subprocess.Popen(
+            ["zsh", "-f", "-i"], stdin=side, stdout=side, stderr=side, cwd=WORK,
+            start_new_session=True, env={**os.environ, "HOME": str(WORK), "TERM": "dumb"})
+        os.close(side)
+
+    def type(self, text):
+        os.write(self.terminal, text.encode())
+
+    def read_until(self, mark, seconds=30):
+        text = ""
+        end = time.monotonic() + seconds
+        while mark not in text and time.monotonic() < end:
+            if select.select([self.terminal], [], [], 0.1)[0]:
+                text += os.read(self.terminal, 65536).decode(errors="replace")
+        return text
+
+    def offers(self, line):
+        # The quotes keep the shell's echo of the command from being taken for its output.
+        self.type(line + "\t")
+        time.sleep(1.5)
+        self.type("\x15print EN''DED\n")
+        text = self.read_until("ENDED").replace("\r", "\n")
+        words = (part.strip() for part in text.split("\n"))
+        return {word[len("OFFER"):] for word in words if word.startswith("OFFER")}
+
+    def close(self):
+        self.type("exit\n")
+        self.process.wait(timeout=30)
+        os.close(self.terminal)
 
 
 def setUpModule():
@@ -58,22 +94,24 @@ class Fish(unittest.TestCase):
 
 
 class Zsh(unittest.TestCase):
-    def offers(self, line):
-        done = subprocess.run(["zsh", "-f", "-c", ZSH, "zsh", str(WORK / "planecast.zsh"), line],
-                              capture_output=True, text=True, cwd=ROOT, timeout=120, check=True,
-                              env={**os.environ, "HOME": str(WORK), "TERM": "dumb"})
-        found = [part.strip() for part in done.stdout.replace("\r", "\n").split("\n")]
-        return {part[len("OFFER"):] for part in found if part.startswith("OFFER")}
-
     def test_the_script_is_valid(self):
         subprocess.run(["zsh", "-n", str(WORK / "planecast.zsh")], check=True)
 
     def test_commands_options_and_values(self):
-        self.assertIn("run", self.offers("planecast ru"))
-        self.assertEqual(self.offers("planecast evaluate ") & {"planes", "run"}, {"planes"})
-        self.assertIn("--plane-merge", self.offers("planecast run desk --plane-m"))
-        self.assertLessEqual({"mono", "rgbd", "auto"}, self.offers("planecast track --mode "))
-        self.assertIn("tabletop", self.offers("planecast synth tablet"))
+        (WORK / "setup").write_text(ZSH_SETUP % ROOT, encoding="utf-8")
+        shell = TypingZsh()
+        self.addCleanup(shell.close)
+        shell.type("source setup; print REA''DY\n")
+        self.assertIn("READY", shell.read_until("READY"))
+        for line, offered in (("planecast ru", {"run"}),
+                              ("planecast evaluate ", {"trajectory", "planes", "overlay", "masks"}),
+                              ("planecast run desk --plane-m", {"--plane-merge"}),
+                              ("planecast track --mode ", {"mono", "rgbd", "auto"}),
+                              ("planecast synth tablet", {"tabletop"}),
+                              ("planecast track --camera tum-fr", {"tum-fr1", "tum-fr2", "tum-fr3"}),
+                              ("planecast run --scene READ", {"README.md"})):
+            with self.subTest(line=line):
+                self.assertEqual(shell.offers(line), offered)
 
 
 class ManPage(unittest.TestCase):

@@ -74,12 +74,12 @@ std::vector<Eigen::Isometry3d> poses(int count, double distance, double reach_x,
                                      double slant_deg) {
   std::vector<Eigen::Isometry3d> result;
   for (int i = 0; i < count; ++i) {
-    const double golden = 2.399963 * i;
-    const double radius = std::sqrt((i + 0.5) / count);
+    // An additive sequence in two dimensions fills the picture evenly.
+    const double across = 2.0 * std::fmod(0.5 + 0.7548776662 * i, 1.0) - 1.0;
+    const double down = 2.0 * std::fmod(0.5 + 0.5698402910 * i, 1.0) - 1.0;
     const double depth = distance * (1.0 + 0.15 * (i % 3));
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.translation() = Eigen::Vector3d(reach_x * radius * std::cos(golden),
-                                         reach_y * radius * std::sin(golden), depth);
+    pose.translation() = Eigen::Vector3d(reach_x * across, reach_y * down, depth);
     const Eigen::Vector3d axis(std::cos(1.7 * i), std::sin(1.7 * i), 0.2 * (i % 2));
     pose.linear() =
         Eigen::AngleAxisd(slant_deg * M_PI / 180.0, axis.normalized()).toRotationMatrix();
@@ -107,7 +107,8 @@ Calibration calibrate(const std::filesystem::path& folder, const BoardSpec& spec
   return calibrate_camera(*recording, spec, options, nullptr);
 }
 
-/// Focal lengths and centre within 0.5 %, and the lens maps every pixel to within half a pixel.
+/// Focal lengths and centre within 0.5 %, and a ray of any pixel comes back to it within 0.25 % of
+/// the width: an error of the centre is one of a rotation, which a recording hardly tells.
 void expect_same(const slam::Camera& found, const slam::Camera& truth) {
   EXPECT_NEAR(found.fx, truth.fx, 0.005 * truth.fx);
   EXPECT_NEAR(found.fy, truth.fy, 0.005 * truth.fy);
@@ -119,7 +120,7 @@ void expect_same(const slam::Camera& found, const slam::Camera& truth) {
     for (int x = 20; x < truth.width; x += 40) {
       const Eigen::Vector3d ray = truth.ray(truth.undistort({x, y}));
       const Eigen::Vector2d again = found.distort(found.project(ray));
-      EXPECT_LT((again - Eigen::Vector2d(x, y)).norm(), 0.5) << x << " " << y;
+      EXPECT_LT((again - Eigen::Vector2d(x, y)).norm(), 0.0025 * truth.width) << x << " " << y;
     }
   }
 }
@@ -153,7 +154,7 @@ TEST(Calibrate, FindsAPinholeCameraFromAChessboard) {
   const slam::Camera truth = barrel_camera();
   const BoardSpec spec;
   const BoardRenderer renderer(truth, spec);
-  const auto folder = record("pinhole", renderer, poses(24, 14.0, 3.6, 2.6, 32.0));
+  const auto folder = record("pinhole", renderer, poses(30, 13.0, 4.0, 3.4, 32.0));
   const Calibration found = calibrate(folder, spec, truth.lens);
   EXPECT_GE(found.found, 15);
   EXPECT_LT(found.rms_px, 0.15);
@@ -171,7 +172,7 @@ TEST(Calibrate, FindsAFisheyeCameraFromACharucoBoardSeenInPart) {
   spec.columns = 8;
   spec.rows = 6;
   const BoardRenderer renderer(truth, spec);
-  const auto folder = record("fisheye", renderer, poses(24, 5.0, 4.2, 3.0, 30.0));
+  const auto folder = record("fisheye", renderer, poses(30, 5.0, 4.2, 3.0, 30.0));
   const Calibration found = calibrate(folder, spec, truth.lens);
   const auto in_part = [](const CalibrationView& view) { return view.corners.board.size() < 35; };
   EXPECT_GT(std::ranges::count_if(found.views, in_part), 0);
