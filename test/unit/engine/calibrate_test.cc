@@ -172,7 +172,7 @@ TEST(Calibrate, FindsAFisheyeCameraFromACharucoBoardSeenInPart) {
   spec.columns = 8;
   spec.rows = 6;
   const BoardRenderer renderer(truth, spec);
-  const auto folder = record("fisheye", renderer, poses(30, 5.0, 4.2, 3.0, 30.0));
+  const auto folder = record("fisheye", renderer, poses(45, 5.0, 4.8, 3.8, 30.0));
   const Calibration found = calibrate(folder, spec, truth.lens);
   const auto in_part = [](const CalibrationView& view) { return view.corners.board.size() < 35; };
   EXPECT_GT(std::ranges::count_if(found.views, in_part), 0);
