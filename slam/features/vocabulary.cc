@@ -15,8 +15,7 @@ namespace planecast::slam {
 namespace {
 
 constexpr char kMagic[8] = {'P', 'L', 'N', 'C', 'V', 'O', 'C', 1};
-constexpr std::size_t kNodeBytes =
-    sizeof(Descriptor) + 2 * sizeof(std::int32_t) + sizeof(float);
+constexpr std::size_t kNodeBytes = sizeof(Descriptor) + 2 * sizeof(std::int32_t) + sizeof(float);
 
 /// Every child lies behind its parent and within the tree, so that any descent ends.
 bool is_sound(const std::vector<Vocabulary::Node>& nodes) {
