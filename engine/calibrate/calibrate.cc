@@ -9,6 +9,7 @@
 #include <opencv2/calib3d.hpp>
 
 #include "engine/calibrate/view_selection.h"
+#include "engine/sequence/camera_file.h"
 #include "engine/user_error.h"
 
 namespace planecast::engine {
@@ -249,7 +250,6 @@ std::string format_table(const Calibration& calibration) {
 }
 
 nlohmann::ordered_json to_json(const Calibration& calibration) {
-  const slam::Camera& camera = calibration.camera;
   nlohmann::ordered_json json;
   json["frames"] = calibration.frames;
   json["found"] = calibration.found;
@@ -258,13 +258,7 @@ nlohmann::ordered_json to_json(const Calibration& calibration) {
   json["rms_px"] = calibration.rms_px;
   json["coverage"] = calibration.coverage;
   if (calibration.focal_uncertainty) json["focal_uncertainty"] = *calibration.focal_uncertainty;
-  json["width"] = camera.width;
-  json["height"] = camera.height;
-  json["fx"] = camera.fx;
-  json["fy"] = camera.fy;
-  json["cx"] = camera.cx;
-  json["cy"] = camera.cy;
-  json["distortion"] = camera.distortion;
+  json.update(camera_json(calibration.camera));
   json["warnings"] = calibration.warnings;
   return json;
 }

@@ -32,7 +32,7 @@ Json numbers(const Vector& values) {
   return json;
 }
 
-Json camera_json(const slam::Camera& camera) {
+Json projection_json(const slam::Camera& camera) {
   return {{"width", camera.width},   {"height", camera.height}, {"fx", number(camera.fx)},
           {"fy", number(camera.fy)}, {"cx", number(camera.cx)}, {"cy", number(camera.cy)}};
 }
@@ -169,7 +169,7 @@ std::string report_data_json(const Reconstruction& reconstruction, const ReportI
   Json json;
   json["units"] = reconstruction.metric ? "m" : "map units";
   json["fps"] = number(input.fps);
-  json["camera"] = camera_json(reconstruction.camera);
+  json["camera"] = projection_json(reconstruction.camera);
   json["up"] = numbers(reconstruction.up);
   add_frames(reconstruction, json);
   json["planes"] = Json::array();

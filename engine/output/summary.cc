@@ -4,25 +4,12 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/output/atomic_file.h"
+#include "engine/sequence/camera_file.h"
 
 namespace planecast::engine {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json camera_json(const slam::Camera& camera) {
-  Json json;
-  json["model"] = camera.lens == slam::LensModel::kFisheye ? "fisheye" : "pinhole";
-  json["width"] = camera.width;
-  json["height"] = camera.height;
-  json["fx"] = camera.fx;
-  json["fy"] = camera.fy;
-  json["cx"] = camera.cx;
-  json["cy"] = camera.cy;
-  json["distortion"] = camera.distortion;
-  json["guessed"] = camera.guessed;
-  return json;
-}
 
 double share(int part, int whole) { return whole > 0 ? static_cast<double>(part) / whole : 0.0; }
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
@@ -312,6 +313,20 @@ void write_camera_file(const fs::path& file, const CameraSettings& settings,
   if (settings.fps) text += fmt::format("fps: {}\n", *settings.fps);
   text += fmt::format("depth_factor: {}\n", settings.depth_factor);
   write_file(file, text);
+}
+
+nlohmann::ordered_json camera_json(const slam::Camera& camera) {
+  nlohmann::ordered_json json;
+  json["model"] = camera.lens == slam::LensModel::kFisheye ? "fisheye" : "pinhole";
+  json["width"] = camera.width;
+  json["height"] = camera.height;
+  json["fx"] = camera.fx;
+  json["fy"] = camera.fy;
+  json["cx"] = camera.cx;
+  json["cy"] = camera.cy;
+  json["distortion"] = camera.distortion;
+  json["guessed"] = camera.guessed;
+  return json;
 }
 
 slam::Camera fit_camera_to_images(const slam::Camera& camera, int width, int height,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,6 +36,9 @@ slam::Pose read_body_from_cam(const std::filesystem::path& file);
 /// comment of any number of lines. Throws UserError where it cannot be written.
 void write_camera_file(const std::filesystem::path& file, const CameraSettings& settings,
                        const std::string& comment = "");
+
+/// Model, size, intrinsics, distortion and whether they are a guess.
+nlohmann::ordered_json camera_json(const slam::Camera& camera);
 
 /// The camera for images of the given size: scaled where only the size differs. Throws UserError
 /// when the shape differs, since then the intrinsics cannot belong to these images.
