@@ -107,9 +107,8 @@ Calibration calibrate(const std::filesystem::path& folder, const BoardSpec& spec
   return calibrate_camera(*recording, spec, options, nullptr);
 }
 
-/// Focal lengths and centre within 0.5 %, and a ray of any pixel comes back to it within 0.25 % of
-/// the width: an error of the centre is one of a rotation, which a recording hardly tells.
-void expect_same(const slam::Camera& found, const slam::Camera& truth) {
+/// Focal lengths and centre within 0.5 %, and the lens maps every pixel to within `most_px`.
+void expect_same(const slam::Camera& found, const slam::Camera& truth, double most_px) {
   EXPECT_NEAR(found.fx, truth.fx, 0.005 * truth.fx);
   EXPECT_NEAR(found.fy, truth.fy, 0.005 * truth.fy);
   EXPECT_NEAR(found.cx, truth.cx, 0.005 * truth.width);
@@ -120,7 +119,7 @@ void expect_same(const slam::Camera& found, const slam::Camera& truth) {
     for (int x = 20; x < truth.width; x += 40) {
       const Eigen::Vector3d ray = truth.ray(truth.undistort({x, y}));
       const Eigen::Vector2d again = found.distort(found.project(ray));
-      EXPECT_LT((again - Eigen::Vector2d(x, y)).norm(), 0.0025 * truth.width) << x << " " << y;
+      EXPECT_LT((again - Eigen::Vector2d(x, y)).norm(), most_px) << x << " " << y;
     }
   }
 }
@@ -162,7 +161,7 @@ TEST(Calibrate, FindsAPinholeCameraFromAChessboard) {
   ASSERT_TRUE(found.focal_uncertainty);
   EXPECT_LT(*found.focal_uncertainty, 0.005);
   EXPECT_TRUE(found.warnings.empty()) << found.warnings.front();
-  expect_same(found.camera, truth);
+  expect_same(found.camera, truth, 0.5);
 }
 
 TEST(Calibrate, FindsAFisheyeCameraFromACharucoBoardSeenInPart) {
@@ -177,7 +176,9 @@ TEST(Calibrate, FindsAFisheyeCameraFromACharucoBoardSeenInPart) {
   const auto in_part = [](const CalibrationView& view) { return view.corners.board.size() < 35; };
   EXPECT_GT(std::ranges::count_if(found.views, in_part), 0);
   EXPECT_LT(found.rms_px, 0.3);
-  expect_same(found.camera, truth);
+  // A shift of its centre is nearly a turn of a camera so wide, which corners seen in part leave
+  // open by half a pixel and more.
+  expect_same(found.camera, truth, 1.0);
 }
 
 TEST(Calibrate, WarnsOfFrontalViewsInTheMiddle) {
@@ -216,7 +217,7 @@ TEST(Calibrate, AViewThatDoesNotFitIsDropped) {
   EXPECT_EQ(found.rejected, 1);
   EXPECT_EQ(found.views.size(), 11U);
   EXPECT_LT(found.rms_px, 0.01);
-  expect_same(found.camera, truth);
+  expect_same(found.camera, truth, 0.5);
 }
 
 TEST(Calibrate, NoBoardIsOneLine) {
