@@ -6,6 +6,7 @@
 #include "app/manual.h"
 #include "app/options.h"
 #include "engine/calibrate/calibrate.h"
+#include "engine/marker_dictionary.h"
 #include "engine/output/png.h"
 #include "engine/sequence/camera_file.h"
 #include "engine/user_error.h"

@@ -6,8 +6,8 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <set>
-#include <utility>
 
+#include "engine/marker_dictionary.h"
 #include "engine/user_error.h"
 
 namespace planecast::engine {
@@ -16,20 +16,8 @@ namespace {
 constexpr int kLeastCorners = 8;
 constexpr int kMostSquares = 50;
 
-const std::vector<std::pair<std::string, int>>& dictionaries() {
-  static const std::vector<std::pair<std::string, int>> list = {
-      {"4x4_50", cv::aruco::DICT_4X4_50},   {"4x4_100", cv::aruco::DICT_4X4_100},
-      {"4x4_250", cv::aruco::DICT_4X4_250}, {"5x5_50", cv::aruco::DICT_5X5_50},
-      {"5x5_100", cv::aruco::DICT_5X5_100}, {"5x5_250", cv::aruco::DICT_5X5_250},
-      {"6x6_50", cv::aruco::DICT_6X6_50},   {"6x6_100", cv::aruco::DICT_6X6_100},
-      {"6x6_250", cv::aruco::DICT_6X6_250}};
-  return list;
-}
-
-int dictionary_named(const std::string& name) {
-  for (const auto& [known, id] : dictionaries()) {
-    if (known == name) return id;
-  }
+cv::Ptr<cv::aruco::Dictionary> dictionary_named(const std::string& name) {
+  if (const auto dictionary = marker_dictionary(name)) return dictionary;
   throw UserError(fmt::format("{}: no such dictionary of markers ({})", name,
                               fmt::join(marker_dictionary_names(), ", ")));
 }
@@ -59,12 +47,6 @@ struct BoardDetector::Charuco {
   cv::Ptr<cv::aruco::CharucoBoard> board;
 };
 
-std::vector<std::string> marker_dictionary_names() {
-  std::vector<std::string> names;
-  for (const auto& [name, id] : dictionaries()) names.push_back(name);
-  return names;
-}
-
 BoardDetector::BoardDetector(const BoardSpec& spec) : spec_(spec) {
   if (spec.columns < 4 || spec.rows < 4 || spec.columns > kMostSquares ||
       spec.rows > kMostSquares) {
@@ -76,7 +58,7 @@ BoardDetector::BoardDetector(const BoardSpec& spec) : spec_(spec) {
     throw UserError("the markers' share of the squares' side must be between 0 and 1");
   }
   charuco_ = std::make_unique<Charuco>();
-  charuco_->dictionary = cv::aruco::getPredefinedDictionary(dictionary_named(spec.dictionary));
+  charuco_->dictionary = dictionary_named(spec.dictionary);
   const int markers = spec.columns * spec.rows / 2;
   const int known = charuco_->dictionary->bytesList.rows;
   if (markers > known) {

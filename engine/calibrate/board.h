@@ -23,8 +23,6 @@ struct BoardSpec {
   std::string dictionary = "4x4_50";  ///< one of marker_dictionary_names() (ChArUco)
 };
 
-std::vector<std::string> marker_dictionary_names();
-
 /// Inner corners of the board that were seen in a picture, pair by pair.
 struct BoardView {
   std::vector<cv::Point3f> board;  ///< squares; z = 0
