@@ -63,6 +63,7 @@ std::vector<fs::path> models_to_place(const engine::SceneFile& scene) {
   std::ranges::sort(models);
   for (const engine::SceneObject& object : scene.objects) {
     std::error_code ignored;
+    if (object.poster) continue;
     const bool listed = std::ranges::any_of(models, [&](const fs::path& model) {
       return model == object.model || fs::equivalent(model, object.model, ignored);
     });
@@ -81,7 +82,11 @@ int InspectCommand::run() const {
   if (!scene.empty() || fs::exists(scene_path(), ignored)) {
     objects = engine::read_scene_file(scene_path());
   }
-  engine::InspectSession session(std::move(map), objects, scene_path(), models_to_place(objects));
+  const engine::MarkerMap markers =
+      frames ? engine::find_markers(*frames, map, engine::markers_of(objects))
+             : engine::MarkerMap{};
+  engine::InspectSession session(std::move(map), objects, scene_path(), models_to_place(objects),
+                                 markers);
   if (frame >= 0) session.go_to_frame(frame);
   engine::FramePictures pictures(session, std::move(frames));
   engine::InspectWindow window(session, timings(), fps);

@@ -63,6 +63,9 @@ RenderingReport report_rendering(const engine::RenderSequenceResult& result,
     console.warning("frame " + std::to_string(frame) +
                     " could not be read; the picture before it is repeated");
   }
+  if (result.units_per_metre > 0.0) {
+    console.detail("scale: " + std::to_string(result.units_per_metre) + " map units a metre");
+  }
   for (const auto& [step, ms] : result.mean_ms) {
     char text[64];
     std::snprintf(text, sizeof(text), "%-10s %6.1f ms a frame", step.c_str(), ms);

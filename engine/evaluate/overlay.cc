@@ -9,6 +9,9 @@
 
 #include "engine/evaluate/patch.h"
 #include "engine/evaluate/plane_matching.h"
+#include "engine/scene/hit_test.h"
+#include "engine/scene/plane_motion.h"
+#include "engine/scene/plane_outline.h"
 
 namespace planecast::engine {
 namespace {
@@ -19,16 +22,26 @@ constexpr double kNearest = 1e-6;
 /// A frame for which both poses are known.
 struct View {
   int frame_index = 0;
-  slam::Pose estimate;  ///< world_from_cam
+  std::size_t position = 0;  ///< in the reconstruction's frames
+  slam::Pose estimate;       ///< world_from_cam
   slam::Pose truth;
 };
 
-/// One grid point in the true world and its two counterparts in the estimated map.
+/// One grid point in the true world and its two counterparts in the estimated plane's own frame.
 struct GridPoint {
   Eigen::Vector3d truth;
   Eigen::Vector3d normal;  ///< of the true plane
   std::optional<Eigen::Vector3d> aligned;
   std::optional<Eigen::Vector3d> tapped;
+  Tap tap;
+};
+
+using ViewPoses = std::vector<std::optional<slam::Pose>>;  ///< by view
+
+/// An estimated plane with its own frame's pose in each view; nothing where it was not known.
+struct TrackedPlane {
+  const PlaneRecord& record;
+  ViewPoses world_from_plane;
 };
 
 using Errors = std::vector<std::optional<Eigen::Vector2d>>;  ///< of one point by view
@@ -37,17 +50,19 @@ std::vector<View> common_views(const Reconstruction& estimate,
                                const std::vector<TimedPose>& truth_poses,
                                const OverlayOptions& options) {
   std::vector<TimedPose> poses;
-  std::vector<int> indices;
-  for (const FrameRecord& frame : estimate.frames) {
+  std::vector<std::size_t> positions;
+  for (std::size_t i = 0; i < estimate.frames.size(); ++i) {
+    const FrameRecord& frame = estimate.frames[i];
     const auto& pose = options.causal ? frame.causal_world_from_cam : frame.world_from_cam;
     if (!pose) continue;
     poses.push_back({frame.timestamp, *pose});
-    indices.push_back(frame.index);
+    positions.push_back(i);
   }
   std::vector<View> views;
   for (const auto& [e, t] :
        associate(poses, truth_poses, options.planes.trajectory.max_difference_s)) {
-    views.push_back({indices[static_cast<std::size_t>(e)],
+    const std::size_t position = positions[static_cast<std::size_t>(e)];
+    views.push_back({estimate.frames[position].index, position,
                      poses[static_cast<std::size_t>(e)].world_from_cam,
                      truth_poses[static_cast<std::size_t>(t)].world_from_cam});
   }
@@ -67,52 +82,73 @@ bool is_seen(const GridPoint& point, const View& view, const slam::Camera& camer
          is_in_view(view.truth, camera, point.truth);
 }
 
-/// Where the ray of the true pixel hits the estimated plane.
-std::optional<Eigen::Vector3d> hit(const GridPoint& point, const View& view,
-                                   const slam::Camera& true_camera, const slam::Camera& camera,
-                                   const PlaneRecord& plane) {
-  const Eigen::Vector2d pixel = true_camera.project(view.truth.inverse() * point.truth);
-  const Eigen::Vector3d direction = view.estimate.linear() * camera.ray(pixel);
-  const double slope = plane.normal.dot(direction);
-  if (std::abs(slope) < 1e-9) return std::nullopt;
-  const double along = -(plane.normal.dot(view.estimate.translation()) + plane.offset) / slope;
-  if (along <= kNearest) return std::nullopt;
-  return view.estimate.translation() + along * direction;
+/// Where a tap puts content, in the estimated plane's frame; nothing where it meets another plane
+/// or none.
+std::optional<Eigen::Vector3d> tap_point(const View& view, const Tap& tap,
+                                         const std::vector<PlaneRecord>& planes, int plane_id) {
+  const Ray ray{view.estimate.translation(), view.estimate.linear() * tap.direction_cam};
+  const std::optional<Hit> hit = hit_test(planes, ray);
+  if (!hit || hit->plane_id != plane_id) return std::nullopt;
+  return find_plane(planes, plane_id)->world_from_plane().inverse() * hit->point;
 }
 
-std::vector<GridPoint> lay_grid(const PlaneRecord& truth, const PlaneRecord& estimate,
+TrackedPlane track_plane(const PlaneRecord& plane, const std::vector<View>& views,
+                         const PlaneMotion* motion) {
+  TrackedPlane tracked{plane, {}};
+  for (const View& view : views) {
+    tracked.world_from_plane.push_back(motion != nullptr
+                                           ? motion->world_from_plane(plane.id, view.frame_index)
+                                           : std::optional(plane.world_from_plane()));
+  }
+  return tracked;
+}
+
+/// The plane's frame in each view as what was put there by the tap follows it.
+ViewPoses under_tap(const GridPoint& point, const TrackedPlane& plane,
+                    const std::vector<View>& views, const PlaneMotion* motion) {
+  if (motion == nullptr || !point.tapped) return plane.world_from_plane;
+  const ViewPoses by_frame = motion->world_from_plane_under(point.tap, plane.record.id);
+  ViewPoses poses;
+  for (const View& view : views) poses.push_back(by_frame[view.position]);
+  return poses;
+}
+
+std::vector<GridPoint> lay_grid(const PlaneRecord& truth, const TrackedPlane& estimate,
                                 const slam::Similarity& estimate_from_truth,
                                 const std::vector<View>& views, const slam::Camera& true_camera,
-                                const slam::Camera& camera, int cells) {
+                                const Reconstruction& map, const OverlayOptions& options) {
+  const slam::Pose plane_from_world = estimate.record.world_from_plane().inverse();
   std::vector<GridPoint> grid;
-  for (const Eigen::Vector3d& position : Patch(truth).grid(cells)) {
-    GridPoint point{position, truth.normal, std::nullopt, std::nullopt};
-    const Eigen::Vector3d over = estimate_from_truth * position;
-    point.aligned = over - (estimate.normal.dot(over) + estimate.offset) * estimate.normal;
+  for (const Eigen::Vector3d& position : Patch(truth).grid(options.grid_cells)) {
+    GridPoint point{position, truth.normal, std::nullopt, std::nullopt, {}};
+    const Eigen::Vector3d over = plane_from_world * (estimate_from_truth * position);
+    point.aligned = Eigen::Vector3d(over.x(), over.y(), 0.0);
     grid.push_back(point);
   }
-  const auto sees_any = [&](const View& view) {
-    return std::any_of(grid.begin(), grid.end(),
-                       [&](const GridPoint& point) { return is_seen(point, view, true_camera); });
-  };
-  const auto first = std::find_if(views.begin(), views.end(), sees_any);
-  if (first == views.end()) return grid;
-  for (GridPoint& point : grid) {
-    if (is_seen(point, *first, true_camera)) {
-      point.tapped = hit(point, *first, true_camera, camera, estimate);
+  std::vector<bool> seen(grid.size(), false);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (!estimate.world_from_plane[i]) continue;
+    std::vector<PlaneRecord> planes;
+    for (std::size_t k = 0; k < grid.size(); ++k) {
+      if (seen[k] || !is_seen(grid[k], views[i], true_camera)) continue;
+      if (planes.empty()) planes = planes_at(map, views[i].frame_index, options.causal);
+      const Eigen::Vector3d seen_at = views[i].truth.inverse() * grid[k].truth;
+      grid[k].tap = {views[i].frame_index, map.camera.ray(true_camera.project(seen_at))};
+      grid[k].tapped = tap_point(views[i], grid[k].tap, planes, estimate.record.id);
+      seen[k] = true;
     }
   }
   return grid;
 }
 
 Errors errors_of(const GridPoint& point, const std::optional<Eigen::Vector3d>& anchor,
-                 const std::vector<View>& views, const slam::Camera& true_camera,
-                 const slam::Camera& camera) {
+                 const ViewPoses& world_from_plane, const std::vector<View>& views,
+                 const slam::Camera& true_camera, const slam::Camera& camera) {
   Errors errors(views.size());
   if (!anchor) return errors;
   for (std::size_t i = 0; i < views.size(); ++i) {
-    if (!is_seen(point, views[i], true_camera)) continue;
-    const Eigen::Vector3d drawn = views[i].estimate.inverse() * *anchor;
+    if (!world_from_plane[i] || !is_seen(point, views[i], true_camera)) continue;
+    const Eigen::Vector3d drawn = views[i].estimate.inverse() * (*world_from_plane[i] * *anchor);
     if (drawn.z() <= kNearest) continue;
     errors[i] = camera.project(drawn) - true_camera.project(views[i].truth.inverse() * point.truth);
   }
@@ -167,6 +203,8 @@ std::optional<OverlayResult> evaluate_overlay(const Reconstruction& estimate,
   if (!matches) return std::nullopt;
   const std::vector<View> views = common_views(estimate, truth_poses, options);
   const slam::Similarity estimate_from_truth = inverse(matches->trajectory.truth_from_estimate);
+  std::optional<PlaneMotion> motion;
+  if (options.causal) motion.emplace(estimate, options.ease_frames);
   OverlayResult result;
   DriftCollector aligned(views);
   DriftCollector tapped(views);
@@ -174,12 +212,16 @@ std::optional<OverlayResult> evaluate_overlay(const Reconstruction& estimate,
     // A scale of 0 (a truth that never moves) cannot be undone.
     if (!row.matched || !(matches->trajectory.truth_from_estimate.scale > 0.0)) continue;
     const PlaneRecord* true_plane = plane_of(truth, row.truth_id);
-    const PlaneRecord* plane = plane_of(estimate.planes, row.estimate_id);
+    const PlaneMotion* moving = motion ? &*motion : nullptr;
+    const TrackedPlane plane =
+        track_plane(*plane_of(estimate.planes, row.estimate_id), views, moving);
     ++result.planes;
-    for (const GridPoint& point : lay_grid(*true_plane, *plane, estimate_from_truth, views,
-                                           true_camera, estimate.camera, options.grid_cells)) {
-      aligned.add(errors_of(point, point.aligned, views, true_camera, estimate.camera));
-      tapped.add(errors_of(point, point.tapped, views, true_camera, estimate.camera));
+    for (const GridPoint& point :
+         lay_grid(*true_plane, plane, estimate_from_truth, views, true_camera, estimate, options)) {
+      aligned.add(errors_of(point, point.aligned, plane.world_from_plane, views, true_camera,
+                            estimate.camera));
+      tapped.add(errors_of(point, point.tapped, under_tap(point, plane, views, moving), views,
+                           true_camera, estimate.camera));
     }
   }
   for (std::size_t i = 0; i < views.size(); ++i) {

@@ -12,7 +12,8 @@ namespace planecast::engine {
 struct OverlayOptions {
   PlaneEvaluationOptions planes;  ///< alignment, and which estimate stands for which true plane
   int grid_cells = 7;             ///< of the grid laid over each true patch
-  bool causal = false;            ///< judge the poses as they were known at their frames
+  bool causal = false;            ///< judge poses and planes as they were known at their frames
+  int ease_frames = 8;            ///< causal: as the scene file's `ease`
 };
 
 /// Error of drawn content in pixels: drawn with estimated pose and map minus drawn with the truth.
@@ -31,9 +32,12 @@ struct FrameDrift {
 /// Two ways to anchor the same grid in the estimated map:
 /// `aligned`: the true grid brought over by the alignment of the trajectories and dropped onto the
 /// estimated plane: includes every error of scale, pose and plane;
-/// `tapped`: hit-tested in the first frame that sees the patch, as a user places content: zero
+/// `tapped`: hit-tested in the first frame that sees the point, as a user places content: zero
 /// there, and from then on what a viewer sees slide. Independent of the alignment and of the map's
-/// scale.
+/// scale. Only points where the hit test finds this plane count: where the map knows no surface, or
+/// another one in front, nobody can place anything.
+/// Both are then held in the plane's own frame, as anchors are; causal, the plane is where it was
+/// known at each frame (PlaneMotion), and nothing is drawn before it was known.
 struct OverlayResult {
   int planes = 0;  ///< matched, each carrying a grid
   int frames = 0;  ///< in which any grid point was visible

@@ -1,7 +1,6 @@
 #include "engine/inspect/frame_pictures.h"
 
 #include "engine/assets.h"
-#include "engine/pipeline/scene_light.h"
 #include "engine/user_error.h"
 
 namespace planecast::engine {
@@ -12,16 +11,22 @@ const cv::Scalar kDark(34, 30, 27);
 PainterOptions painter_options(const SceneFile& scene) {
   PainterOptions options;
   options.shader_dir = asset("shaders");
-  options.occlusion = scene.occlusion;
-  options.shadows = scene.shadows;
+  options.placing.occlusion = scene.occlusion;
+  options.placing.shadows = scene.shadows;
+  options.look = scene.look;
   return options;
 }
 
-SceneLight light_of(const InspectSession& session, Sequence* sequence) {
+LightTrack light_of(const InspectSession& session, Sequence* sequence) {
   const Reconstruction& reconstruction = session.reconstruction();
-  if (session.scene().light) return fixed_light(*session.scene().light, reconstruction.up);
-  return sequence != nullptr ? estimate_light(*sequence, reconstruction)
-                             : fixed_light(FixedLight(), reconstruction.up);
+  const std::optional<FixedLight>& fixed = session.scene().light;
+  if (sequence == nullptr) {
+    return LightTrack(fixed_light(fixed.value_or(FixedLight()), reconstruction.up));
+  }
+  LightTrackOptions options;
+  options.most_samples = 12;  // a window shall open soon
+  options.follow_exposure = session.scene().look.exposure;
+  return {*sequence, reconstruction, fixed, options};
 }
 
 }  // namespace

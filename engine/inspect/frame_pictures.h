@@ -4,8 +4,8 @@
 #include <opencv2/core.hpp>
 
 #include "engine/inspect/session.h"
-#include "engine/look/light.h"
 #include "engine/pipeline/frame_painter.h"
+#include "engine/pipeline/scene_light.h"
 #include "engine/sequence/sequence.h"
 
 namespace planecast::engine {
@@ -30,7 +30,7 @@ class FramePictures {
 
   const InspectSession& session_;
   std::unique_ptr<Sequence> sequence_;
-  SceneLight light_;
+  LightTrack light_;
   std::unique_ptr<FramePainter> painter_;
   int painter_content_ = -1;
   slam::FrameInput frame_;

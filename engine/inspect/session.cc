@@ -54,10 +54,11 @@ double turned(double degrees) {
 
 InspectSession::InspectSession(Reconstruction reconstruction, SceneFile scene,
                                std::filesystem::path scene_path,
-                               std::vector<std::filesystem::path> models)
+                               std::vector<std::filesystem::path> models, MarkerMap markers)
     : reconstruction_(std::move(reconstruction)),
       scene_path_(std::move(scene_path)),
-      models_(std::move(models)) {
+      models_(std::move(models)),
+      markers_(std::move(markers)) {
   refresh(scene);
   const auto posed = std::ranges::find_if(
       reconstruction_.frames, [](const FrameRecord& f) { return f.world_from_cam.has_value(); });
@@ -143,8 +144,8 @@ double InspectSession::selected_size() const {
   if (!selected_) return 0.0;
   const SceneObject& object = scene_.objects[*selected_];
   if (object.size) return *object.size;
-  const SizeUnit unit = size_unit(reconstruction_, scene_, object, false);
-  const double one = unit.units_per_metre > 0.0 ? unit.units_per_metre : unit.median_depth;
+  const SizeUnit unit = size_unit({reconstruction_, false, markers_}, scene_, object);
+  const double one = length_unit(object, unit);
   return content_.items[*selected_].longest_side / one;
 }
 
@@ -213,9 +214,9 @@ bool InspectSession::try_objects(std::vector<SceneObject> objects) {
 }
 
 void InspectSession::refresh(const SceneFile& scene) {
-  content_ = load_content(reconstruction_, scene, false, shelf_);
+  content_ = load_content({reconstruction_, false, markers_}, scene, shelf_);
   scene_ = scene;
-  objects_ = object_records(content_, scene_, reconstruction_);
+  objects_ = object_records(content_, reconstruction_);
   ++revision_;
 }
 

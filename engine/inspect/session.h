@@ -23,10 +23,11 @@ enum class InspectTool {
 /// their position in the reconstruction.
 class InspectSession {
  public:
-  /// `scene_path` is where save() writes. `models` are offered for placing. A scene whose objects
+  /// `scene_path` is where save() writes. `models` are offered for placing,
+  /// `markers` are those found in the pictures. A scene whose objects
   /// have no place in this reconstruction throws UserError.
   InspectSession(Reconstruction reconstruction, SceneFile scene, std::filesystem::path scene_path,
-                 std::vector<std::filesystem::path> models);
+                 std::vector<std::filesystem::path> models, MarkerMap markers = {});
 
   const Reconstruction& reconstruction() const { return reconstruction_; }
   const SceneFile& scene() const { return scene_; }
@@ -98,6 +99,7 @@ class InspectSession {
   SceneFile scene_;
   std::filesystem::path scene_path_;
   std::vector<std::filesystem::path> models_;
+  MarkerMap markers_;
   ModelShelf shelf_;
   Content content_;
   std::vector<ObjectRecord> objects_;

@@ -31,6 +31,10 @@ std::string place_words(const SceneObject& object) {
            std::to_string(static_cast<int>(pixel->pixel.y()));
   }
   if (const auto* plane = std::get_if<PlanePlace>(&object.place)) return "plane " + plane->plane;
+  if (const auto* marker = std::get_if<MarkerPlace>(&object.place)) {
+    return "marker " + std::to_string(marker->marker.id);
+  }
+  if (const auto* below = std::get_if<ObjectPlace>(&object.place)) return "on " + below->object;
   return "free point";
 }
 
@@ -65,7 +69,7 @@ void InspectWindow::objects_table() {
     const SceneObject& object = session_.scene().objects[i];
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
-    const std::string name = object.model.stem().string() + "##" + std::to_string(i);
+    const std::string name = session_.content().items[i].name + "##" + std::to_string(i);
     if (ImGui::Selectable(name.c_str(), session_.selected() == i,
                           ImGuiSelectableFlags_SpanAllColumns)) {
       session_.select(i);

@@ -163,13 +163,17 @@ SceneLight LightEstimator::estimate(const Eigen::Vector3d& up) const {
   // Seen by the viewer, light from the upper left and a little from behind shows shapes best; what
   // the pictures say outweighs it as soon as they say anything.
   const Eigen::Vector3d custom = -0.10 * right_sum_.normalized() - 0.06 * view_sum_.normalized();
-  const Eigen::Vector3d lateral = flattened(custom, up) + side + 0.5 * visible_sources(up);
-  light.sun_direction =
-      (up + 0.6 * std::min(1.0, 4.0 * lateral.norm()) * lateral.normalized()).normalized();
+  const Eigen::Vector3d sources = visible_sources(up);
+  const double seen_share = sources.norm();
+  const Eigen::Vector3d lateral = flattened(custom, up) + side + 0.5 * sources;
+  // A window that is seen shines flatter than a lamp on the ceiling, and throws darker shadows.
+  const double lean = 0.6 * std::min(1.0, 4.0 * lateral.norm()) + 0.35 * seen_share;
+  light.sun_direction = (up + lean * lateral.normalized()).normalized();
   const double facing = light.sun_direction.dot(up);
-  light.sun_radiance = color * brightness() * options_.sun_share / std::max(facing, 0.3);
-  light.mean = color * brightness() * (1.0 - options_.sun_share) /
-               (1.0 + kGradientOnFacing * options_.up_gradient);
+  const double sun_share = options_.sun_share + options_.source_share * seen_share;
+  light.sun_radiance = color * brightness() * sun_share / std::max(facing, 0.3);
+  light.mean =
+      color * brightness() * (1.0 - sun_share) / (1.0 + kGradientOnFacing * options_.up_gradient);
   return light;
 }
 

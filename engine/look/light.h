@@ -29,9 +29,10 @@ struct LightOptions {
       0.35;  ///< of the surfaces of a room; turns what is seen into what shines on it
   double bright_albedo = 0.7;  ///< of its brightest tenth: paper, walls; the second opinion
   double neutral_share =
-      0.5;                    ///< how far the light's colour is drawn from the scene's towards grey
-  double sun_share = 0.45;    ///< of the light on a surface that faces up
-  double up_gradient = 0.25;  ///< light from above over light from below, when nothing is known
+      0.5;                  ///< how far the light's colour is drawn from the scene's towards grey
+  double sun_share = 0.45;  ///< of the light on a surface that faces up
+  double source_share = 0.27;    ///< more of it where windows or lamps are certainly seen
+  double up_gradient = 0.25;     ///< light from above over light from below, when nothing is known
   double min_brightness = 0.15;  ///< bounds of the light on a facing white surface
   double max_brightness = 1.6;
 };

@@ -8,6 +8,7 @@
 #include "engine/output/atomic_file.h"
 #include "engine/output/ear_clip.h"
 #include "engine/output/glb_builder.h"
+#include "engine/output/match_move_camera.h"
 #include "engine/output/palette.h"
 #include "engine/user_error.h"
 
@@ -15,10 +16,6 @@ namespace planecast::engine {
 namespace {
 
 using slam::Pose;
-
-/// glTF's axes of a camera (x right, y up, looking along -z) in the field's (x right, y down, z
-/// forward); its own inverse.
-Eigen::Matrix3d flip_yz() { return Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal(); }
 
 std::array<float, 3> to_float(const Eigen::Vector3d& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
@@ -31,34 +28,6 @@ std::array<float, 4> to_float(const Eigen::Quaterniond& q) {
 
 double linear_of_srgb(double encoded) {
   return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
-
-/// Smallest turn of glTF's usual view of a camera world (flip_yz) that puts `up` on +y.
-Eigen::Quaterniond gltf_from_world(const Eigen::Vector3d& up) {
-  const Eigen::Vector3d flipped_up = flip_yz() * up.normalized();
-  return Eigen::Quaterniond::FromTwoVectors(flipped_up, Eigen::Vector3d::UnitY()) *
-         Eigen::Quaterniond(flip_yz());
-}
-
-/// The same scene with y negated, in world and camera: a negative fy becomes positive.
-Reconstruction mirrored(Reconstruction scene) {
-  const Eigen::Matrix3d mirror = Eigen::Vector3d(1.0, -1.0, 1.0).asDiagonal();
-  scene.camera.fy = -scene.camera.fy;
-  scene.up = mirror * scene.up;
-  for (FrameRecord& frame : scene.frames) {
-    if (!frame.world_from_cam) continue;
-    frame.world_from_cam->linear() = mirror * frame.world_from_cam->linear() * mirror;
-    frame.world_from_cam->translation() = mirror * frame.world_from_cam->translation();
-  }
-  for (PlaneRecord& plane : scene.planes) {
-    for (Eigen::Vector3d* v : {&plane.normal, &plane.origin, &plane.x_axis}) *v = mirror * *v;
-    for (Eigen::Vector3d& vertex : plane.polygon) vertex = mirror * vertex;
-    for (auto& hole : plane.holes) {
-      for (Eigen::Vector3d& vertex : hole) vertex = mirror * vertex;
-    }
-  }
-  for (MapPoint& point : scene.points) point.position = mirror * point.position;
-  return scene;
 }
 
 int add_camera(const slam::Camera& camera, tinygltf::Model& model) {
@@ -79,31 +48,6 @@ int add_camera(const slam::Camera& camera, tinygltf::Model& model) {
   gltf.extras = tinygltf::Value(extras);
   model.cameras.push_back(std::move(gltf));
   return static_cast<int>(model.cameras.size()) - 1;
-}
-
-struct CameraTrack {
-  std::vector<float> seconds;
-  std::vector<std::array<float, 3>> translations;
-  std::vector<std::array<float, 4>> rotations;
-};
-
-CameraTrack camera_track(const std::vector<FrameRecord>& frames) {
-  CameraTrack track;
-  Eigen::Quaterniond previous = Eigen::Quaterniond::Identity();
-  for (const FrameRecord& frame : frames) {
-    if (!frame.world_from_cam) continue;
-    const auto seconds = static_cast<float>(frame.timestamp - frames.front().timestamp);
-    if (!track.seconds.empty() && seconds <= track.seconds.back()) continue;
-    Eigen::Quaterniond rotation(Eigen::Matrix3d(frame.world_from_cam->linear() * flip_yz()));
-    rotation.normalize();
-    // Importers interpolate component-wise: no jump to the opposite quaternion.
-    if (rotation.dot(previous) < 0.0) rotation.coeffs() = -rotation.coeffs();
-    previous = rotation;
-    track.seconds.push_back(seconds);
-    track.translations.push_back(to_float(frame.world_from_cam->translation()));
-    track.rotations.push_back(to_float(rotation));
-  }
-  return track;
 }
 
 void add_channel(int node, const char* path, int input, int output,
@@ -170,6 +114,19 @@ Ring2d in_plane(const std::vector<Eigen::Vector3d>& ring, const Pose& plane_from
   return flat;
 }
 
+/// A translucent box in place of a model, in the model's own space, so that the model itself
+/// fits when it is put under the node.
+int add_box_material(tinygltf::Model& model) {
+  tinygltf::Material material;
+  material.name = "object";
+  material.pbrMetallicRoughness.baseColorFactor = {0.8, 0.35, 0.05, 0.5};
+  material.pbrMetallicRoughness.metallicFactor = 0.0;
+  material.alphaMode = "BLEND";
+  material.doubleSided = true;
+  model.materials.push_back(std::move(material));
+  return static_cast<int>(model.materials.size()) - 1;
+}
+
 int add_mesh(const std::string& name, tinygltf::Primitive primitive, tinygltf::Model& model) {
   tinygltf::Mesh mesh;
   mesh.name = name;
@@ -229,11 +186,65 @@ void add_points(const std::vector<MapPoint>& points, GlbBuilder& builder) {
   add_child(std::move(node), builder.model);
 }
 
+tinygltf::Primitive box_mesh(const Eigen::AlignedBox3d& box, int material, GlbBuilder& builder) {
+  std::vector<std::array<float, 3>> corners;
+  for (int i = 0; i < 8; ++i) {
+    corners.push_back(to_float(box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i))));
+  }
+  // Corner i has the larger x, y, z where bits 0, 1, 2 are set.
+  const std::vector<std::uint32_t> sides = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                                            2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+  tinygltf::Primitive primitive;
+  primitive.mode = TINYGLTF_MODE_TRIANGLES;
+  primitive.attributes["POSITION"] = builder.add_positions(corners);
+  primitive.indices = builder.add_indices(sides);
+  primitive.material = material;
+  return primitive;
+}
+
+void add_objects(const std::vector<ObjectRecord>& objects, GlbBuilder& builder) {
+  if (objects.empty()) return;
+  const int material = add_box_material(builder.model);
+  for (const ObjectRecord& object : objects) {
+    const double scale = std::cbrt(object.world_from_model.linear().determinant());
+    const Eigen::Quaterniond turn(Eigen::Matrix3d(object.world_from_model.linear() / scale));
+    tinygltf::Node node;
+    node.name = "object " + object.name;
+    const std::array<float, 3> place = to_float(object.world_from_model.translation());
+    const std::array<float, 4> rotation = to_float(turn.normalized());
+    node.translation.assign(place.begin(), place.end());
+    node.rotation.assign(rotation.begin(), rotation.end());
+    node.scale.assign(3, scale);
+    tinygltf::Value::Object extras;
+    extras["file"] = tinygltf::Value(object.file);
+    node.extras = tinygltf::Value(extras);
+    node.mesh = add_mesh(node.name, box_mesh(object.box, material, builder), builder.model);
+    add_child(std::move(node), builder.model);
+  }
+}
+
+/// The scene in the mirrored world; the models' boxes are mirrored with it.
+std::vector<ObjectRecord> mirrored(std::vector<ObjectRecord> objects) {
+  const Eigen::Affine3d mirror(Eigen::Scaling(1.0, -1.0, 1.0));
+  for (ObjectRecord& object : objects) {
+    object.world_from_model = mirror * object.world_from_model * mirror;
+    const Eigen::AlignedBox3d box = object.box;
+    object.box = Eigen::AlignedBox3d(Eigen::Vector3d(box.min().x(), -box.max().y(), box.min().z()),
+                                     Eigen::Vector3d(box.max().x(), -box.min().y(), box.max().z()));
+  }
+  return objects;
+}
+
 void add_root(const Reconstruction& scene, tinygltf::Model& model) {
   tinygltf::Node root;
   root.name = "world";
   const std::array<float, 4> rotation = to_float(gltf_from_world(scene.up));
   root.rotation.assign(rotation.begin(), rotation.end());
+  tinygltf::Value::Object extras;
+  extras["fps"] = tinygltf::Value(frame_rate(scene.frames));
+  extras["frames"] = tinygltf::Value(static_cast<int>(scene.frames.size()));
+  extras["metres"] = tinygltf::Value(scene.metric);
+  root.extras = tinygltf::Value(extras);
   model.nodes.push_back(std::move(root));
   tinygltf::Scene gltf_scene;
   gltf_scene.nodes.push_back(0);
@@ -243,9 +254,10 @@ void add_root(const Reconstruction& scene, tinygltf::Model& model) {
 
 }  // namespace
 
-void write_match_move(const Reconstruction& reconstruction, const std::filesystem::path& path) {
+void write_match_move(const Reconstruction& reconstruction, const std::filesystem::path& path,
+                      const std::vector<ObjectRecord>& objects) {
   if (reconstruction.camera.fy < 0.0) {
-    write_match_move(mirrored(reconstruction), path);
+    write_match_move(mirrored(reconstruction), path, mirrored(objects));
     return;
   }
   GlbBuilder builder;
@@ -253,6 +265,7 @@ void write_match_move(const Reconstruction& reconstruction, const std::filesyste
   add_camera_node(reconstruction, builder);
   for (const PlaneRecord& plane : reconstruction.planes) add_plane(plane, builder);
   add_points(reconstruction.points, builder);
+  add_objects(objects, builder);
   const std::string bytes = builder.bytes();
   if (bytes.empty()) throw UserError(fmt::format("{}: the scene cannot be encoded", path.string()));
   write_file(path, bytes);

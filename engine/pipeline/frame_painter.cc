@@ -7,9 +7,8 @@
 
 #include "engine/convert.h"
 #include "engine/look/camera_blur.h"
-#include "engine/look/exposure.h"
+#include "engine/look/depth_edges.h"
 #include "engine/look/object_layer.h"
-#include "engine/scene/patches.h"
 
 namespace planecast::engine {
 namespace {
@@ -44,12 +43,10 @@ render::RendererOptions renderer_options(const PainterOptions& options) {
   return result;
 }
 
-render::Instance to_instance(const ContentItem& item, const Eigen::Affine3d& world_from_model) {
-  render::Instance instance;
-  instance.model = item.model;
-  instance.world_from_model = to_glm(world_from_model.matrix());
-  instance.animation = item.animation;
-  return instance;
+/// The camera whose lens the objects are drawn with.
+slam::Camera drawing_camera(slam::Camera camera, bool lens) {
+  if (!lens) camera.distortion.fill(0.0);
+  return camera;
 }
 
 }  // namespace
@@ -62,49 +59,43 @@ cv::Mat to_bgr(const cv::Mat& image) {
 }
 
 FramePainter::FramePainter(const Reconstruction& reconstruction, const Content& content,
-                           const SceneLight& light, const PainterOptions& options)
+                           const LightTrack& light, const PainterOptions& options)
     : reconstruction_(reconstruction),
       options_(options),
       light_(light),
-      warp_(reconstruction.camera),
+      warp_(drawing_camera(reconstruction.camera, options.look.lens)),
       grain_(options.seed),
       renderer_(renderer_options(options)) {
   set_content(content);
-  scene_.light.sun.casts_shadow = options.shadows;
+  scene_.light.sun.casts_shadow = options.placing.shadows;
   scene_.light.sun.softness = kShadowSoftness;
+}
+
+void FramePainter::set_light(const SceneLight& light) {
+  const auto sh = light.ambient_sh();
+  std::ranges::transform(sh, scene_.light.ambient_sh.begin(),
+                         [](const Eigen::Vector3d& c) { return to_glm(c); });
+  scene_.light.sun.radiance = to_glm(light.sun_radiance);
   scene_.light.sun.direction_to_light = to_glm(light.sun_direction);
 }
 
 void FramePainter::set_content(const Content& content) {
-  scene_.instances.clear();
-  scene_.catchers.clear();
-  scene_.occluders.clear();
-  for (const ContentItem& item : content.items) {
-    if (const auto world_from_model = item.placed.world_from_model(reconstruction_.planes)) {
-      scene_.instances.push_back(to_instance(item, *world_from_model));
-    }
-  }
-  if (options_.shadows) scene_.catchers = shadow_catchers(reconstruction_, content);
-  if (options_.occlusion == Occlusion::kPlanes || options_.occlusion == Occlusion::kBoth) {
-    scene_.occluders = plane_occluders(reconstruction_, content);
-  }
+  placed_.emplace(reconstruction_, content, options_.placing);
 }
 
-void FramePainter::set_light(double gain) {
-  const auto sh = light_.ambient_sh(gain);
-  std::ranges::transform(sh, scene_.light.ambient_sh.begin(),
-                         [](const Eigen::Vector3d& c) { return to_glm(c); });
-  scene_.light.sun.radiance = to_glm(Eigen::Vector3d(gain * light_.sun_radiance));
-}
-
-void FramePainter::set_depth(const cv::Mat& raw_depth) {
-  const bool wanted =
-      options_.occlusion == Occlusion::kDepth || options_.occlusion == Occlusion::kBoth;
+void FramePainter::set_depth(const slam::FrameInput& frame, const slam::Pose& world_from_cam) {
+  const bool wanted = options_.placing.occlusion == Occlusion::kDepth ||
+                      options_.placing.occlusion == Occlusion::kBoth;
   scene_.occluder_depth = nullptr;
-  if (!wanted || raw_depth.empty()) return;
-  // Single wild pixels of the sensor would pepper the object.
+  if (!wanted || frame.depth.empty()) return;
   cv::Mat filtered;
-  cv::medianBlur(raw_depth, filtered, 5);
+  if (options_.look.clean_edges) {
+    const cv::Rect region = placed_->bounds(frame.index, reconstruction_.camera, world_from_cam);
+    filtered = refine_depth_edges(frame.depth, frame.image, region);
+  } else {
+    // Single wild pixels of the sensor would pepper the object.
+    cv::medianBlur(frame.depth, filtered, 5);
+  }
   const cv::Mat depth = warp_.depth_to_layer(filtered);
   depth_ = render::ImageF(depth.cols, depth.rows, 1);
   for (int y = 0; y < depth.rows; ++y) {
@@ -119,12 +110,9 @@ bool FramePainter::paint(const slam::FrameInput& frame, const slam::Pose& world_
                          double time_s, cv::Mat& picture) {
   StopWatch watch;
   const cv::Mat grey = to_grey(frame.image);
-  set_light(options_.follow_exposure ? exposure_gain(reconstruction_, frame.image, world_from_cam)
-                                     : 1.0);
-  set_depth(frame.depth);
-  for (render::Instance& instance : scene_.instances) {
-    instance.animation_time_s = static_cast<float>(time_s);
-  }
+  set_light(light_.at(frame.index));
+  set_depth(frame, world_from_cam);
+  placed_->at(frame.index, time_s, scene_);
   render::Camera camera = to_render_camera(warp_.layer_camera(), world_from_cam.inverse());
   camera.near_plane = static_cast<float>(kNearShare * reconstruction_.median_depth);
   camera.far_plane = static_cast<float>(kFarShare * reconstruction_.median_depth);
@@ -136,9 +124,9 @@ bool FramePainter::paint(const slam::FrameInput& frame, const slam::Pose& world_
   times_.composite_ms = 0.0;
   if (layer.bounds.empty()) return false;
 
-  if (options_.match_blur) apply_blur(estimate_blur(grey), layer);
+  if (options_.look.blur) apply_blur(estimate_blur(grey), layer);
   layer = warp_.to_raw(layer);
-  if (options_.match_grain) grain_.apply(estimate_grain(grey), frame.index, layer);
+  if (options_.look.grain) grain_.apply(estimate_grain(grey), frame.index, layer);
   composite(layer, picture);
   times_.composite_ms = watch.lap_ms();
   return true;

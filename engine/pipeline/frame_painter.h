@@ -8,9 +8,10 @@
 
 #include "engine/look/grain.h"
 #include "engine/look/lens_warp.h"
-#include "engine/look/light.h"
 #include "engine/pipeline/reconstruction.h"
+#include "engine/pipeline/scene_light.h"
 #include "engine/scene/content.h"
+#include "engine/scene/placed_scene.h"
 #include "render/renderer.h"
 #include "slam/data/frame.h"
 
@@ -18,29 +19,27 @@ namespace planecast::engine {
 
 struct PainterOptions {
   std::filesystem::path shader_dir;
-  Occlusion occlusion = Occlusion::kPlanes;
-  bool shadows = true;
-  bool follow_exposure = true;
-  bool match_blur = true;
-  bool match_grain = true;
+  PlacedSceneOptions placing;
+  Look look;
   std::uint64_t seed = 1;
 };
 
 /// Milliseconds of one painted frame.
 struct PaintTimes {
-  double look_ms = 0.0;       ///< exposure and depth
+  double look_ms = 0.0;       ///< depth
   double draw_ms = 0.0;       ///< the renderer
   double composite_ms = 0.0;  ///< blur, grain, lens and compositing
 };
 
 /// Draws the content into pictures: layer by the renderer, then everything that makes it belong to
 /// the picture. Each picture depends on its own frame alone, so that any of them can be made again.
-/// The renderer inside belongs to the thread that made the painter.
+/// All that it was made with must outlive it; the renderer inside belongs to the thread that made
+/// the painter.
 class FramePainter {
  public:
   /// Throws std::runtime_error when no rendering context can be made.
   FramePainter(const Reconstruction& reconstruction, const Content& content,
-               const SceneLight& light, const PainterOptions& options);
+               const LightTrack& light, const PainterOptions& options);
 
   /// Draws other content from now on; models that stay are kept.
   void set_content(const Content& content);
@@ -53,15 +52,16 @@ class FramePainter {
   std::string renderer_description() const { return renderer_.description(); }
 
  private:
-  void set_light(double gain);
-  void set_depth(const cv::Mat& raw_depth);
+  void set_light(const SceneLight& light);
+  void set_depth(const slam::FrameInput& frame, const slam::Pose& world_from_cam);
 
   const Reconstruction& reconstruction_;
   PainterOptions options_;
-  SceneLight light_;
+  const LightTrack& light_;
   LensWarp warp_;
   Grain grain_;
   render::Renderer renderer_;
+  std::optional<PlacedScene> placed_;
   render::LayerScene scene_;
   render::ImageF depth_;
   PaintTimes times_;

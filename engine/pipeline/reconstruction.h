@@ -50,6 +50,28 @@ struct PlaneRecord {
   slam::Pose world_from_plane() const;
 };
 
+/// A plane's own frame as it stood at some time of the first pass.
+struct KnownPlane {
+  int id = 0;
+  slam::Pose world_from_plane = slam::Pose::Identity();
+};
+
+/// A keyframe's pose as it stood at some time of the first pass.
+struct KnownKeyframe {
+  int frame_index = 0;
+  slam::Pose world_from_cam = slam::Pose::Identity();
+};
+
+/// A change of the map as it became visible during the first pass: what a live device knew.
+struct MapChange {
+  int frame_index = 0;  ///< holds from this frame on
+  /// How the map moved about the camera: the last pose before the change, in the new map, is this
+  /// times what it was in the old one.
+  slam::Pose new_from_old_world = slam::Pose::Identity();
+  std::vector<KnownPlane> planes;        ///< all that are known now, ascending by id
+  std::vector<KnownKeyframe> keyframes;  ///< those that are new or moved, ascending by frame
+};
+
 struct MapPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Vector3f color_rgb = Eigen::Vector3f::Zero();  ///< 0..255
@@ -76,6 +98,7 @@ struct Reconstruction {
   double median_depth = 1.0;          ///< of the finished map
   std::vector<FrameRecord> frames;
   std::vector<KeyframeRecord> keyframes;
+  std::vector<MapChange> map_changes;  ///< ascending by frame
   std::vector<PlaneRecord> planes;
   std::vector<MapPoint> points;
   Eigen::Vector3d up = -Eigen::Vector3d::UnitY();  ///< unit, world

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include "engine/output/atomic_file.h"
+#include "engine/output/map_changes.h"
 #include "engine/output/match_move.h"
+#include "engine/output/match_move_camera.h"
 #include "engine/output/planes_json.h"
 #include "engine/output/ply.h"
 #include "engine/output/summary.h"
@@ -80,11 +82,13 @@ void write_reconstruction(const Reconstruction& reconstruction, const fs::path& 
   write_trajectory(poses_of(frames, &FrameRecord::causal_world_from_cam),
                    folder / "trajectory_causal.txt");
   write_trajectory(poses_of(reconstruction.keyframes), folder / "keyframes.txt");
+  write_map_changes(reconstruction.map_changes, folder / "map_changes.csv");
   write_planes_json({reconstruction.metric, reconstruction.planes, reconstruction.up,
                      reconstruction.up_confidence},
                     folder / "planes.json");
   write_ply(reconstruction.points, folder / "map.ply");
   write_match_move(reconstruction, folder / "scene.glb");
+  write_chan(reconstruction, folder / "camera.chan");
   write_frames_csv(frames, folder / "frames.csv");
   write_times_csv(reconstruction, folder / "times.csv");
   write_timings_json(reconstruction, folder / "timings.json");
@@ -108,6 +112,7 @@ Reconstruction read_reconstruction(const fs::path& folder) {
   read_frame_poses(folder / "trajectory_causal.txt", &FrameRecord::causal_world_from_cam,
                    reconstruction.frames);
   reconstruction.keyframes = read_keyframes(folder / "keyframes.txt", reconstruction.frames);
+  reconstruction.map_changes = read_map_changes(folder / "map_changes.csv");
   PlaneSet planes = read_planes_json(folder / "planes.json");
   reconstruction.planes = std::move(planes.planes);
   reconstruction.up = planes.up;

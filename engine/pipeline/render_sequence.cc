@@ -11,6 +11,8 @@
 #include "engine/assets.h"
 #include "engine/look/debug_overlay.h"
 #include "engine/output/atomic_file.h"
+#include "engine/output/match_move.h"
+#include "engine/output/match_move_camera.h"
 #include "engine/output/png.h"
 #include "engine/output/video.h"
 #include "engine/pipeline/frame_painter.h"
@@ -40,14 +42,15 @@ class SequenceRenderer {
         scene_(scene),
         options_(options),
         folder_(folder),
-        content_(load_content(reconstruction, scene, options.causal)),
-        light_(scene.light ? fixed_light(*scene.light, reconstruction.up)
-                           : estimate_light(sequence, reconstruction)),
+        markers_(find_markers(sequence, reconstruction, markers_of(scene))),
+        content_(load_content({reconstruction, options.causal, markers_}, scene)),
+        light_(sequence, reconstruction, scene.light, light_options()),
         painter_(reconstruction, content_, light_, painter_options()) {
     for (const FrameRecord& record : reconstruction.frames) records_[record.index] = &record;
     result_.warnings = content_.warnings;
+    result_.units_per_metre = content_.units_per_metre;
     result_.renderer = painter_.renderer_description();
-    result_.objects = object_records(content_, scene, reconstruction);
+    result_.objects = object_records(content_, reconstruction);
   }
 
   RenderSequenceResult run(const Progress& progress);
@@ -57,9 +60,18 @@ class SequenceRenderer {
   PainterOptions painter_options() const {
     PainterOptions result;
     result.shader_dir = asset("shaders");
-    result.occlusion = scene_.occlusion;
-    result.shadows = scene_.shadows;
+    result.placing.causal = options_.causal;
+    result.placing.ease_frames = scene_.ease_frames;
+    result.placing.occlusion = scene_.occlusion;
+    result.placing.shadows = scene_.shadows;
+    result.look = scene_.look;
     result.seed = options_.seed;
+    return result;
+  }
+  LightTrackOptions light_options() const {
+    LightTrackOptions result;
+    result.causal = options_.causal;
+    result.follow_exposure = scene_.look.exposure;
     return result;
   }
   void open_outputs();
@@ -74,8 +86,9 @@ class SequenceRenderer {
   const SceneFile& scene_;
   const RenderSequenceOptions& options_;
   std::filesystem::path folder_;
+  MarkerMap markers_;
   Content content_;
-  SceneLight light_;
+  LightTrack light_;
   FramePainter painter_;
   std::unique_ptr<DebugOverlay> overlay_;
   std::map<int, const FrameRecord*> records_;
@@ -87,6 +100,8 @@ class SequenceRenderer {
 
 void SequenceRenderer::open_outputs() {
   make_folder(folder_);
+  write_match_move(reconstruction_, folder_ / "scene.glb", result_.objects);
+  write_chan(reconstruction_, folder_ / "camera.chan");
   if (options_.png) make_folder(folder_ / "frames");
   if (options_.video) {
     VideoOptions video_options;

@@ -28,8 +28,9 @@ struct RenderSequenceOptions {
 };
 
 struct RenderSequenceResult {
-  int frames = 0;        ///< written by this call
-  int with_content = 0;  ///< of them, those in which something was drawn
+  int frames = 0;                ///< written by this call
+  int with_content = 0;          ///< of them, those in which something was drawn
+  double units_per_metre = 0.0;  ///< as the sizes counted; 0: the map has no scale
   std::vector<int> unreadable;
   std::filesystem::path video;                  ///< empty when there is none
   std::vector<std::pair<int, cv::Mat>> stills;  ///< frame number and BGR picture

@@ -1,10 +1,39 @@
 #include "engine/pipeline/scene_light.h"
 
-#include <vector>
+#include <algorithm>
+#include <cmath>
 
+#include "engine/look/exposure.h"
 #include "engine/user_error.h"
 
 namespace planecast::engine {
+namespace {
+
+std::vector<const FrameRecord*> sampled_frames(const Sequence& sequence,
+                                               const Reconstruction& reconstruction,
+                                               const LightTrackOptions& options) {
+  std::vector<const FrameRecord*> posed;
+  for (const FrameRecord& frame : reconstruction.frames) {
+    const bool in_range =
+        frame.index >= sequence.first_frame() && frame.index < sequence.end_frame();
+    const auto& pose = options.causal ? frame.causal_world_from_cam : frame.world_from_cam;
+    if (pose && in_range) posed.push_back(&frame);
+  }
+  const auto stride = std::max<std::size_t>(
+      static_cast<std::size_t>(options.stride),
+      posed.size() / static_cast<std::size_t>(std::max(options.most_samples, 1)));
+  std::vector<const FrameRecord*> sampled;
+  for (std::size_t i = 0; i < posed.size(); i += stride) sampled.push_back(posed[i]);
+  return sampled;
+}
+
+SceneLight scaled(SceneLight light, double gain) {
+  light.mean *= gain;
+  light.sun_radiance *= gain;
+  return light;
+}
+
+}  // namespace
 
 SceneLight fixed_light(const FixedLight& light, const Eigen::Vector3d& up) {
   Eigen::Vector3d right = Eigen::Vector3d::UnitX() - up.x() * up;
@@ -18,24 +47,103 @@ SceneLight fixed_light(const FixedLight& light, const Eigen::Vector3d& up) {
   return result;
 }
 
-SceneLight estimate_light(Sequence& sequence, const Reconstruction& reconstruction, int samples) {
-  std::vector<const FrameRecord*> posed;
-  for (const FrameRecord& frame : reconstruction.frames) {
-    const bool in_range =
-        frame.index >= sequence.first_frame() && frame.index < sequence.end_frame();
-    if (frame.world_from_cam && in_range) posed.push_back(&frame);
-  }
+SceneLight between(const SceneLight& from, const SceneLight& to, double t) {
+  SceneLight light;
+  light.mean = (1.0 - t) * from.mean + t * to.mean;
+  light.gradient = (1.0 - t) * from.gradient + t * to.gradient;
+  light.sun_radiance = (1.0 - t) * from.sun_radiance + t * to.sun_radiance;
+  const Eigen::Vector3d direction = (1.0 - t) * from.sun_direction + t * to.sun_direction;
+  light.sun_direction =
+      direction.norm() > 1e-6 ? Eigen::Vector3d(direction.normalized()) : to.sun_direction;
+  return light;
+}
+
+LightTrack::LightTrack(Sequence& sequence, const Reconstruction& reconstruction,
+                       const std::optional<FixedLight>& fixed, const LightTrackOptions& options)
+    : causal_(options.causal) {
   LightEstimator estimator;
-  const std::size_t count = std::min(posed.size(), static_cast<std::size_t>(samples));
-  for (std::size_t i = 0; i < count; ++i) {
-    const FrameRecord& frame = *posed[(2 * i + 1) * posed.size() / (2 * count)];
+  without_samples_ =
+      fixed ? fixed_light(*fixed, reconstruction.up) : estimator.estimate(reconstruction.up);
+  if (fixed && !options.follow_exposure) return;
+  const auto frames = sampled_frames(sequence, reconstruction, options);
+  const std::size_t view_step =
+      std::max<std::size_t>(1, frames.size() / static_cast<std::size_t>(options.most_views));
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const FrameRecord& frame = *frames[i];
+    const slam::Pose& pose = options.causal ? *frame.causal_world_from_cam : *frame.world_from_cam;
+    Sample sample;
+    sample.frame_index = frame.index;
     try {
-      estimator.add(sequence.read(frame.index).image, reconstruction.camera, *frame.world_from_cam);
+      const cv::Mat image = sequence.read(frame.index).image;
+      if (options.follow_exposure) sample.gain = exposure_gain(reconstruction, image, pose);
+      if (!fixed && i % view_step == 0) estimator.add(image, reconstruction.camera, pose);
     } catch (const UserError&) {
       continue;  // the render pass reports it
     }
+    sample.light = without_samples_;
+    if (!fixed && options.causal) {
+      sample.light = i % view_step == 0 || samples_.empty() ? estimator.estimate(reconstruction.up)
+                                                            : samples_.back().light;
+    }
+    samples_.push_back(sample);
   }
-  return estimator.estimate(reconstruction.up);
+  if (!fixed && !options.causal) {
+    const SceneLight light = estimator.estimate(reconstruction.up);
+    for (Sample& sample : samples_) sample.light = light;
+  }
+  if (options.causal) {
+    filter(options.causal_share);
+  } else {
+    smooth_exposure(options.smooth_samples);
+  }
+}
+
+/// Gaussian over the neighbours, in the logarithm: a gain and its inverse weigh the same.
+void LightTrack::smooth_exposure(double deviation) {
+  const auto reach = static_cast<int>(std::ceil(3.0 * deviation));
+  std::vector<double> smooth;
+  const auto count = static_cast<int>(samples_.size());
+  for (int i = 0; i < count; ++i) {
+    double sum = 0.0;
+    double weights = 0.0;
+    for (int k = std::max(0, i - reach); k <= std::min(count - 1, i + reach); ++k) {
+      const double d = (k - i) / std::max(deviation, 1e-9);
+      const double weight = std::exp(-0.5 * d * d);
+      sum += weight * std::log(samples_[static_cast<std::size_t>(k)].gain);
+      weights += weight;
+    }
+    smooth.push_back(std::exp(sum / weights));
+  }
+  for (int i = 0; i < count; ++i) {
+    samples_[static_cast<std::size_t>(i)].gain = smooth[static_cast<std::size_t>(i)];
+  }
+}
+
+/// Each sample a share of itself and the rest of what was before.
+void LightTrack::filter(double share) {
+  for (std::size_t i = 1; i < samples_.size(); ++i) {
+    samples_[i].gain = (1.0 - share) * samples_[i - 1].gain + share * samples_[i].gain;
+    samples_[i].light = between(samples_[i - 1].light, samples_[i].light, share);
+  }
+}
+
+SceneLight LightTrack::at(int frame_index) const {
+  if (samples_.empty()) return without_samples_;
+  const auto later = std::ranges::upper_bound(samples_, frame_index, {}, &Sample::frame_index);
+  if (later == samples_.begin()) return scaled(later->light, later->gain);
+  const auto now = later - 1;
+  if (!causal_) {
+    if (later == samples_.end()) return scaled(now->light, now->gain);
+    const double t = static_cast<double>(frame_index - now->frame_index) /
+                     (later->frame_index - now->frame_index);
+    return scaled(between(now->light, later->light, t), (1.0 - t) * now->gain + t * later->gain);
+  }
+  // What the latest sample says comes in over as many frames as lie between the last two.
+  if (now == samples_.begin()) return scaled(now->light, now->gain);
+  const auto before = now - 1;
+  const double t = std::min(
+      1.0, (frame_index - now->frame_index + 1.0) / (now->frame_index - before->frame_index));
+  return scaled(between(before->light, now->light, t), (1.0 - t) * before->gain + t * now->gain);
 }
 
 }  // namespace planecast::engine

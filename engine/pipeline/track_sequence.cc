@@ -94,6 +94,41 @@ class FramesAhead {
   std::future<Prepared> next_;
 };
 
+std::vector<KnownPlane> known_planes(const slam::Map& map) {
+  std::vector<KnownPlane> planes;
+  for (const slam::Plane& plane : map.planes) {
+    if (!plane.weak) planes.push_back({plane.id, plane.world_from_plane()});
+  }
+  return planes;
+}
+
+using KeyframePoses = std::map<slam::KeyframeId, slam::Pose>;
+
+/// Keyframes that are new or have another pose than in `poses`, which takes the present ones.
+std::vector<KnownKeyframe> moved_keyframes(const slam::Map& map, slam::KeyframeId first,
+                                           KeyframePoses& poses) {
+  std::vector<KnownKeyframe> moved;
+  for (const slam::Keyframe& keyframe : map.keyframes) {
+    if (keyframe.id < first) continue;
+    const auto [known, is_new] = poses.try_emplace(keyframe.id, keyframe.cam_from_world);
+    if (!is_new && known->second.matrix() == keyframe.cam_from_world.matrix()) continue;
+    known->second = keyframe.cam_from_world;
+    moved.push_back({keyframe.frame_index, keyframe.cam_from_world.inverse()});
+  }
+  return moved;
+}
+
+/// Whether a map change did anything to what stands on the planes.
+bool changed(const std::vector<KnownPlane>& before, const MapChange& change) {
+  const bool same_planes =
+      std::ranges::equal(before, change.planes, [](const KnownPlane& a, const KnownPlane& b) {
+        return a.id == b.id && a.world_from_plane.matrix() == b.world_from_plane.matrix();
+      });
+  if (!same_planes) return true;
+  constexpr double kRounding = 1e-9;
+  return !before.empty() && !change.new_from_old_world.isApprox(slam::Pose::Identity(), kRounding);
+}
+
 /// One frame of the first pass, as the second needs it.
 struct Tracked {
   slam::KeyframeId reference = slam::kNone;
@@ -142,6 +177,7 @@ class TwoPassTracker {
                       const slam::ImageFeatures& image);
   void smooth();
   void record_first(int position, const slam::FrameTrack& track);
+  void record_map_change(int position);
   Reconstruction records();
 
   Sequence& sequence_;
@@ -157,6 +193,8 @@ class TwoPassTracker {
   std::vector<Tracked> tracked_;
   std::vector<std::optional<slam::PathPose>> localised_;  ///< in the second pass
   std::vector<StageTimes> times_;
+  std::vector<MapChange> map_changes_;
+  KeyframePoses known_keyframes_;  ///< as of the last of the changes
   std::map<std::string, std::vector<double>> mapping_times_;
   slam::JointResult joint_;
 };
@@ -177,10 +215,35 @@ void TwoPassTracker::record_first(int position, const slam::FrameTrack& track) {
       tracked_[q] = {};
       frames_[q].causal_world_from_cam.reset();
     }
+    map_changes_.clear();
+    known_keyframes_.clear();
   }
+  record_map_change(position);
   if (!track.cam_from_world) return;
   record.causal_world_from_cam = track.cam_from_world->inverse();
   tracked_[p] = {track.reference, track.cam_from_reference};
+}
+
+/// What a change of the map did to the planes and, by way of the last tracked frame, to the camera.
+void TwoPassTracker::record_map_change(int position) {
+  MapChange change;
+  change.frame_index = first_ + position;
+  change.planes = known_planes(system_.map());
+  for (int before = position - 1; before >= 0; --before) {
+    const auto p = static_cast<std::size_t>(before);
+    if (!frames_[p].causal_world_from_cam || tracked_[p].reference == slam::kNone) continue;
+    change.new_from_old_world =
+        system_.map()
+            .from_keyframe(tracked_[p].cam_from_reference, tracked_[p].reference)
+            .inverse() *
+        frames_[p].causal_world_from_cam->inverse();
+    break;
+  }
+  const std::vector<KnownPlane> before =
+      map_changes_.empty() ? std::vector<KnownPlane>{} : map_changes_.back().planes;
+  if (!changed(before, change)) return;
+  change.keyframes = moved_keyframes(system_.map(), first_own_keyframe_, known_keyframes_);
+  map_changes_.push_back(std::move(change));
 }
 
 void TwoPassTracker::first_pass() {
@@ -316,6 +379,7 @@ Reconstruction TwoPassTracker::records() {
                                 joint_.kept ? joint_.plane_rms_after : joint_.plane_rms_before};
   }
   result.frames = std::move(frames_);
+  result.map_changes = std::move(map_changes_);
   result.frame_times = std::move(times_);
   result.mapping_times = std::move(mapping_times_);
   result.warnings = sequence_.warnings();

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <set>
 
+#include "engine/scene/plane_motion.h"
 #include "engine/scene/plane_outline.h"
 #include "engine/user_error.h"
 
@@ -29,20 +30,19 @@ std::string describe_pixel(int frame, const Eigen::Vector2d& pixel) {
 }
 
 /// The planes that a grid of rays through the picture meets.
-std::vector<PlaneRecord> planes_in_view(const Reconstruction& reconstruction,
+std::vector<PlaneRecord> planes_in_view(const std::vector<PlaneRecord>& planes,
+                                        const slam::Camera& camera,
                                         const slam::Pose& world_from_cam) {
   constexpr int kRays = 16;  // a side
-  const slam::Camera& camera = reconstruction.camera;
   std::set<int> ids;
   for (int i = 0; i < kRays * kRays; ++i) {
     const Eigen::Vector2d pixel((i % kRays + 0.5) * camera.width / kRays,
                                 (i / kRays + 0.5) * camera.height / kRays);
-    const auto hit =
-        hit_test(reconstruction.planes, pixel_ray(camera, world_from_cam, pixel), {0.0});
+    const auto hit = hit_test(planes, pixel_ray(camera, world_from_cam, pixel), {0.0});
     if (hit) ids.insert(hit->plane_id);
   }
   std::vector<PlaneRecord> seen;
-  for (const PlaneRecord& plane : reconstruction.planes) {
+  for (const PlaneRecord& plane : planes) {
     if (ids.count(plane.id) != 0) seen.push_back(plane);
   }
   return seen;
@@ -54,6 +54,10 @@ Ray pixel_ray(const slam::Camera& camera, const slam::Pose& world_from_cam,
               const Eigen::Vector2d& raw_pixel) {
   return {world_from_cam.translation(),
           world_from_cam.linear() * camera.ray(camera.undistort(raw_pixel))};
+}
+
+std::vector<PlaneRecord> planes_at(const Reconstruction& reconstruction, int frame, bool causal) {
+  return causal ? planes_as_known(reconstruction, frame) : reconstruction.planes;
 }
 
 std::optional<Hit> hit_test(const std::vector<PlaneRecord>& planes, const Ray& ray,
@@ -116,10 +120,11 @@ Hit tap(const Reconstruction& reconstruction, int frame, const Eigen::Vector2d& 
                     std::to_string(camera.height) + ")");
   }
   const Ray ray = pixel_ray(camera, world_from_cam, raw_pixel);
-  if (const std::optional<Hit> hit = hit_test(reconstruction.planes, ray)) return *hit;
+  const std::vector<PlaneRecord> planes = planes_at(reconstruction, frame, causal);
+  if (const std::optional<Hit> hit = hit_test(planes, ray)) return *hit;
   throw UserError(
       where + ": there is no plane at " + describe_pixel(frame, raw_pixel) +
-      "; planes in that frame: " + list_planes(planes_in_view(reconstruction, world_from_cam)));
+      "; planes in that frame: " + list_planes(planes_in_view(planes, camera, world_from_cam)));
 }
 
 }  // namespace planecast::engine

@@ -30,6 +30,9 @@ struct HitOptions {
 Ray pixel_ray(const slam::Camera& camera, const slam::Pose& world_from_cam,
               const Eigen::Vector2d& raw_pixel);
 
+/// What a causal run knew of the planes at a frame; else the finished map's.
+std::vector<PlaneRecord> planes_at(const Reconstruction& reconstruction, int frame, bool causal);
+
 /// Nearest plane polygon that the ray meets from its front; nothing when it meets none.
 std::optional<Hit> hit_test(const std::vector<PlaneRecord>& planes, const Ray& ray,
                             const HitOptions& options = {});
@@ -39,7 +42,8 @@ std::optional<Hit> hit_test(const std::vector<PlaneRecord>& planes, const Ray& r
 slam::Pose frame_pose(const Reconstruction& reconstruction, int frame, bool causal,
                       const std::string& where);
 
-/// As a tap on that frame. Throws UserError beginning with `where` and naming what is there.
+/// As a tap on that frame; causal, on the planes as they were known then (planes_as_known). Throws
+/// UserError beginning with `where` and naming what is there.
 Hit tap(const Reconstruction& reconstruction, int frame, const Eigen::Vector2d& raw_pixel,
         bool causal, const std::string& where);
 

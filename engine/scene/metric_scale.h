@@ -1,9 +1,10 @@
 #pragma once
 
-#include "engine/pipeline/reconstruction.h"
 #include "engine/scene/scene_file.h"
 
 namespace planecast::engine {
+
+struct PlacingWorld;
 
 /// What a scene file's `size` counts in.
 struct SizeUnit {
@@ -13,8 +14,7 @@ struct SizeUnit {
 
 /// Unit for one object: metres where the reconstruction or the scene's `scale` has them; else the
 /// median depth of the finished map (causal, for a tap: of what the tapped frame sees). Throws
-/// UserError when the scale's pixels or planes are not there.
-SizeUnit size_unit(const Reconstruction& reconstruction, const SceneFile& scene,
-                   const SceneObject& object, bool causal);
+/// UserError when the scale's pixels, planes or marker are not there.
+SizeUnit size_unit(const PlacingWorld& world, const SceneFile& scene, const SceneObject& object);
 
 }  // namespace planecast::engine

@@ -15,6 +15,7 @@ namespace planecast::engine {
 /// A model where it was placed.
 struct ObjectRecord {
   std::string name;
+  std::string file;  ///< the model's
   int plane = slam::kNone;
   Eigen::Affine3d world_from_model = Eigen::Affine3d::Identity();
   Eigen::AlignedBox3d box;  ///< the model's bounds in its own space

@@ -103,6 +103,54 @@ render::PlanePatch free_patch(const ContentItem& item) {
   return to_patch(square, world_from_ground);
 }
 
+constexpr double kNearlyParallel = 0.9;  // cosine
+
+bool is_sound(const PlaneRecord& plane, const SoundPlane& sound, double median_depth) {
+  return plane.inliers >= sound.min_inliers && plane.rms <= sound.max_rms_share * median_depth &&
+         plane.polygon.size() >= 3;
+}
+
+/// An item with its plane and its place in the world.
+struct Stand {
+  const ContentItem& item;
+  const PlaneRecord& ground;
+  slam::Pose world_from_anchor;
+};
+
+std::vector<Stand> stands(const Reconstruction& reconstruction, const Content& content) {
+  std::vector<Stand> result;
+  for (const ContentItem& item : content.items) {
+    const PlaneRecord* ground = find_plane(reconstruction.planes, item.placed.anchor.plane_id);
+    const auto anchor = item.placed.anchor.world_from_anchor(reconstruction.planes);
+    if (ground != nullptr && anchor) result.push_back({item, *ground, *anchor});
+  }
+  return result;
+}
+
+/// Whether a plane is the ground of the content, or runs so near to it that it is another estimate
+/// of it.
+bool is_ground(const PlaneRecord& plane, const Stand& stand, double near_plane_share) {
+  if (&stand.ground == &plane) return true;
+  const double distance =
+      std::abs(plane.normal.dot(stand.world_from_anchor.translation()) + plane.offset);
+  return plane.normal.dot(stand.ground.normal) > kNearlyParallel &&
+         distance < near_plane_share * stand.item.longest_side;
+}
+
+/// Whether the item's shadow can be seen on a plane that it does not stand on.
+bool shades(const Stand& stand, const PlaneRecord& plane, const CatcherOptions& options) {
+  const double reach = options.reach * stand.item.longest_side;
+  const Eigen::Vector3d place = stand.world_from_anchor.translation();
+  const double height = plane.normal.dot(place) + plane.offset;
+  const double below_ground = stand.ground.normal.dot(plane.origin) + stand.ground.offset;
+  const bool shielded =
+      plane.normal.dot(stand.ground.normal) > kNearlyParallel && below_ground < 0.0;
+  if (shielded || height < 0.0 || height > reach) return false;
+  const PlaneOutline outline = plane_outline(plane);
+  const Eigen::Vector2d foot = (plane.world_from_plane().inverse() * place).head<2>();
+  return contains(outline, foot) || distance_to_edge(outline, foot) < reach;
+}
+
 }  // namespace
 
 PlaneOutline with_circle(const PlaneOutline& outline, const Eigen::Vector2d& centre, double radius,
@@ -124,57 +172,54 @@ PlaneOutline with_circle(const PlaneOutline& outline, const Eigen::Vector2d& cen
   return trace(mask, grid, centre);
 }
 
-std::vector<render::PlanePatch> shadow_catchers(const Reconstruction& reconstruction,
-                                                const Content& content) {
-  std::vector<render::PlanePatch> patches;
+std::vector<MapPatch> shadow_catchers(const Reconstruction& reconstruction, const Content& content,
+                                      const CatcherOptions& options) {
+  std::vector<MapPatch> patches;
   std::map<int, PlaneOutline> outlines;
   for (const ContentItem& item : content.items) {
-    const Anchor& anchor = item.placed.anchor;
-    if (anchor.plane_id == slam::kNone) {
-      patches.push_back(free_patch(item));
-      continue;
+    if (item.placed.anchor.plane_id == slam::kNone) {
+      patches.push_back({slam::kNone, free_patch(item)});
     }
-    const PlaneRecord* plane = find_plane(reconstruction.planes, anchor.plane_id);
-    if (plane == nullptr) continue;
-    const auto [entry, fresh] = outlines.try_emplace(plane->id);
-    if (fresh) entry->second = plane_outline(*plane);
-    const Eigen::Vector2d place = anchor.plane_from_anchor.translation().head<2>();
-    entry->second = with_circle(entry->second, place, kRoomAround * item.footprint);
+  }
+  const std::vector<Stand> all = stands(reconstruction, content);
+  for (const Stand& stand : all) {
+    const auto [entry, fresh] = outlines.try_emplace(stand.ground.id);
+    if (fresh) entry->second = plane_outline(stand.ground);
+    const Eigen::Vector2d place =
+        stand.item.placed.anchor.plane_from_anchor.translation().head<2>();
+    entry->second = with_circle(entry->second, place, kRoomAround * stand.item.footprint);
+  }
+  for (const PlaneRecord& plane : reconstruction.planes) {
+    if (!is_sound(plane, options.sound, reconstruction.median_depth)) continue;
+    const bool grounds = std::ranges::any_of(
+        all, [&](const Stand& stand) { return is_ground(plane, stand, options.near_plane_share); });
+    const bool shaded =
+        std::ranges::any_of(all, [&](const Stand& stand) { return shades(stand, plane, options); });
+    if (!grounds && shaded) outlines.try_emplace(plane.id, plane_outline(plane));
   }
   for (const auto& [id, outline] : outlines) {
     if (outline.outer.size() < 3) continue;
-    patches.push_back(to_patch(outline, find_plane(reconstruction.planes, id)->world_from_plane()));
+    patches.push_back(
+        {id, to_patch(outline, find_plane(reconstruction.planes, id)->world_from_plane())});
   }
-  for (render::PlanePatch& patch : patches) {
-    patch.edge_softness_m = static_cast<float>(kEdgeSoftness * reconstruction.median_depth);
+  for (MapPatch& patch : patches) {
+    patch.patch.edge_softness_m = static_cast<float>(kEdgeSoftness * reconstruction.median_depth);
   }
   return patches;
 }
 
-std::vector<render::PlanePatch> plane_occluders(const Reconstruction& reconstruction,
-                                                const Content& content,
-                                                const OccluderOptions& options) {
-  constexpr double kNearlyParallel = 0.9;  // cosine
+std::vector<MapPatch> plane_occluders(const Reconstruction& reconstruction, const Content& content,
+                                      const OccluderOptions& options) {
   const double depth = reconstruction.median_depth;
-  const auto carries_content = [&](const PlaneRecord& plane) {
-    return std::ranges::any_of(content.items, [&](const ContentItem& item) {
-      const PlaneRecord* ground = find_plane(reconstruction.planes, item.placed.anchor.plane_id);
-      const auto anchor = item.placed.anchor.world_from_anchor(reconstruction.planes);
-      if (ground == &plane) return true;
-      if (ground == nullptr || !anchor) return false;
-      const double distance = std::abs(plane.normal.dot(anchor->translation()) + plane.offset);
-      return plane.normal.dot(ground->normal) > kNearlyParallel &&
-             distance < options.near_plane_share * item.longest_side;
-    });
-  };
-  std::vector<render::PlanePatch> patches;
+  const std::vector<Stand> all = stands(reconstruction, content);
+  std::vector<MapPatch> patches;
   for (const PlaneRecord& plane : reconstruction.planes) {
-    const bool sound = plane.inliers >= options.min_inliers &&
-                       plane.rms <= options.max_rms_share * depth && plane.polygon.size() >= 3;
-    if (!sound || carries_content(plane)) continue;
+    const bool grounds = std::ranges::any_of(
+        all, [&](const Stand& stand) { return is_ground(plane, stand, options.near_plane_share); });
+    if (grounds || !is_sound(plane, options.sound, depth)) continue;
     slam::Pose world_from_plane = plane.world_from_plane();
     world_from_plane.translation() -= options.set_back_share * depth * plane.normal;
-    patches.push_back(to_patch(plane_outline(plane), world_from_plane));
+    patches.push_back({plane.id, to_patch(plane_outline(plane), world_from_plane)});
   }
   return patches;
 }

@@ -15,14 +15,32 @@ namespace planecast::engine {
 PlaneOutline with_circle(const PlaneOutline& outline, const Eigen::Vector2d& centre, double radius,
                          int cells = 384);
 
-/// Shadow catchers: the planes that content stands on, each once, and a patch of ground under
-/// content that is tied to no plane.
-std::vector<render::PlanePatch> shadow_catchers(const Reconstruction& reconstruction,
-                                                const Content& content);
+/// A patch of the finished map and the plane that it belongs to (kNone: the world).
+struct MapPatch {
+  int plane_id = slam::kNone;
+  render::PlanePatch patch;
+};
+
+/// What makes a plane worth trusting beyond the content that stands on it.
+struct SoundPlane {
+  int min_inliers = 40;         ///< planes with less support do not count
+  double max_rms_share = 0.01;  ///< of the median depth
+};
+
+struct CatcherOptions {
+  SoundPlane sound;
+  double reach = 2.5;  ///< sizes of the content within which its shadow falls on other planes
+  double near_plane_share = 0.5;  ///< planes nearly in the content's own: closer than this x size
+};
+
+/// Shadow catchers: the planes that content stands on, each once; sound planes near it, such as the
+/// wall behind a table, which it stands in front of and which its own plane does not shield; and a
+/// patch of ground under content that is tied to no plane.
+std::vector<MapPatch> shadow_catchers(const Reconstruction& reconstruction, const Content& content,
+                                      const CatcherOptions& options = {});
 
 struct OccluderOptions {
-  int min_inliers = 40;           ///< planes with less support hide nothing
-  double max_rms_share = 0.01;    ///< of the median depth
+  SoundPlane sound;
   double set_back_share = 0.015;  ///< occluders stand back by this share of the median depth
   double near_plane_share =
       0.5;  ///< planes nearly in the content's own plane: closer than this x size
@@ -31,8 +49,7 @@ struct OccluderOptions {
 /// Planes that hide content behind them. A wrong occluder cuts holes into objects and a missing one
 /// is hardly seen, so only planes with sound support take part, none that content stands on or that
 /// runs nearly in one of those, and each is moved back a little along its normal.
-std::vector<render::PlanePatch> plane_occluders(const Reconstruction& reconstruction,
-                                                const Content& content,
-                                                const OccluderOptions& options = {});
+std::vector<MapPatch> plane_occluders(const Reconstruction& reconstruction, const Content& content,
+                                      const OccluderOptions& options = {});
 
 }  // namespace planecast::engine

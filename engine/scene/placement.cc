@@ -9,20 +9,30 @@
 #include "engine/user_error.h"
 
 namespace planecast::engine {
+
+double length_unit(const SceneObject& object, const SizeUnit& unit) {
+  const bool known = unit.units_per_metre > 0.0;
+  if (object.unit == LengthUnit::kMetres && !known) {
+    throw UserError(object.where + ": 'size' in metres needs a scale, and the map has none");
+  }
+  return known && object.unit != LengthUnit::kRelative ? unit.units_per_metre : unit.median_depth;
+}
+
 namespace {
 
 constexpr double kVerticalCosine = 0.7071;  ///< normals farther than 45 degrees from up are walls'
 constexpr double kUsableUp = 0.1;           ///< confidence below which the up direction is not used
 constexpr double kDefaultSize = 0.25;       ///< of the median depth, for maps without scale
 
-/// What the three kinds of place have in common once resolved.
+/// What the kinds of place have in common once resolved.
 struct Spot {
-  const PlaneRecord* plane = nullptr;  ///< null: a free point of the world
+  std::optional<PlaneRecord> plane;  ///< none: a free point of the world
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::UnitY();
   Eigen::Vector3d x_axis = Eigen::Vector3d::UnitX();
   Eigen::Vector3d viewer = Eigen::Vector3d::Zero();  ///< whom content faces
   bool vertical = false;
+  std::optional<Tap> tap;
 };
 
 /// Part of `v` at right angles to the unit vector `normal`, normalised; nothing when they are
@@ -38,7 +48,7 @@ Eigen::Vector3d any_tangent(const Eigen::Vector3d& normal) { return normal.unitO
 Spot spot_on(const Reconstruction& reconstruction, const PlaneRecord& plane,
              const Eigen::Vector3d& point, const Eigen::Vector3d& viewer) {
   Spot spot;
-  spot.plane = &plane;
+  spot.plane = plane;
   spot.point = point;
   spot.normal = plane.normal;
   spot.x_axis = plane.x_axis;
@@ -47,36 +57,57 @@ Spot spot_on(const Reconstruction& reconstruction, const PlaneRecord& plane,
   return spot;
 }
 
-Spot resolve(const Reconstruction& reconstruction, const PixelPlace& place, bool causal,
-             const std::string& where) {
-  const Hit hit = tap(reconstruction, place.frame, place.pixel, causal, where);
-  const PlaneRecord* plane = find_plane(reconstruction.planes, hit.plane_id);
-  return spot_on(reconstruction, *plane, hit.point,
-                 frame_pose(reconstruction, place.frame, causal, where).translation());
+Spot resolve(const PlacingWorld& world, const PixelPlace& place, const std::string& where) {
+  const Hit hit = tap(world.map, place.frame, place.pixel, world.causal, where);
+  const std::vector<PlaneRecord> planes = planes_at(world.map, place.frame, world.causal);
+  Spot spot = spot_on(world.map, *find_plane(planes, hit.plane_id), hit.point,
+                      frame_pose(world.map, place.frame, world.causal, where).translation());
+  const slam::Camera& camera = world.map.camera;
+  spot.tap = Tap{place.frame, camera.ray(camera.undistort(place.pixel))};
+  return spot;
 }
 
-Spot resolve(const Reconstruction& reconstruction, const PlanePlace& place, bool /*causal*/,
-             const std::string& where) {
-  const PlaneRecord& plane = select_plane(reconstruction, place.plane, where);
+Spot resolve(const PlacingWorld& world, const PlanePlace& place, const std::string& where) {
+  const PlaneRecord& plane = select_plane(world.map, place.plane, where);
   const Eigen::AlignedBox2d box = bounding_box(plane_outline(plane));
   if (box.isEmpty()) {
     throw UserError(where + ": plane " + std::to_string(plane.id) + " has no outline to place on");
   }
   const Eigen::Vector2d at = box.min() + place.at.cwiseProduct(box.sizes());
   const Eigen::Vector3d point = plane.world_from_plane() * Eigen::Vector3d(at.x(), at.y(), 0.0);
-  return spot_on(reconstruction, plane, point, mean_camera_position(reconstruction));
+  return spot_on(world.map, plane, point, mean_camera_position(world.map));
 }
 
-Spot resolve(const Reconstruction& reconstruction, const PointPlace& place, bool /*causal*/,
-             const std::string& /*where*/) {
+/// A point and normal of the world that no plane of the map carries.
+Spot free_spot(const Reconstruction& map, const Eigen::Vector3d& point,
+               const Eigen::Vector3d& normal) {
   Spot spot;
-  spot.point = place.position;
-  spot.normal = place.normal.norm() > 0.5 ? place.normal : reconstruction.up;
-  spot.x_axis = tangent(Eigen::Vector3d::UnitX(), spot.normal).value_or(any_tangent(spot.normal));
-  spot.viewer = mean_camera_position(reconstruction);
-  spot.vertical = reconstruction.up_confidence > kUsableUp &&
-                  std::abs(spot.normal.dot(reconstruction.up)) < kVerticalCosine;
+  spot.point = point;
+  spot.normal = normal;
+  spot.x_axis = tangent(Eigen::Vector3d::UnitX(), normal).value_or(any_tangent(normal));
+  spot.viewer = mean_camera_position(map);
+  spot.vertical = map.up_confidence > kUsableUp && std::abs(normal.dot(map.up)) < kVerticalCosine;
   return spot;
+}
+
+Spot resolve(const PlacingWorld& world, const PointPlace& place, const std::string& /*where*/) {
+  const bool given = place.normal.norm() > 0.5;
+  return free_spot(world.map, place.position, given ? place.normal : world.map.up);
+}
+
+Spot resolve(const PlacingWorld& world, const MarkerPlace& place, const std::string& where) {
+  const FoundMarker& marker = select_marker(world.markers, place.marker, where);
+  const PlaneRecord* plane = find_plane(world.map.planes, marker.plane_id);
+  Spot spot = plane != nullptr
+                  ? spot_on(world.map, *plane, marker.centre(), mean_camera_position(world.map))
+                  : free_spot(world.map, marker.centre(), marker.normal());
+  spot.x_axis = tangent(marker.x_axis(), spot.normal).value_or(spot.x_axis);
+  return spot;
+}
+
+/// Stacked objects take their pose from the one below; see place_object().
+Spot resolve(const PlacingWorld& /*world*/, const ObjectPlace& place, const std::string& where) {
+  throw UserError(where + ": there is no object '" + place.object + "' to stand on");
 }
 
 /// Axes of an object that stands: columns x, y = normal, z = front.
@@ -101,10 +132,28 @@ double model_scale(const SceneObject& object, const ModelBox& box, const SizeUni
   if (!(longest > 0.0) || !std::isfinite(longest)) {
     throw UserError(object.where + ": model '" + object.model.string() + "' has no extent");
   }
-  if (unit.units_per_metre > 0.0) {
-    return object.size ? *object.size * unit.units_per_metre / longest : unit.units_per_metre;
-  }
-  return object.size.value_or(kDefaultSize) * unit.median_depth / longest;
+  if (object.size) return *object.size * length_unit(object, unit) / longest;
+  if (unit.units_per_metre > 0.0) return unit.units_per_metre;
+  return kDefaultSize * unit.median_depth / longest;
+}
+
+slam::Pose world_from_spot(const Reconstruction& map, const Spot& spot, const SceneObject& object) {
+  slam::Pose pose = slam::Pose::Identity();
+  pose.translation() = spot.point;
+  pose.linear() = Eigen::AngleAxisd(object.yaw_deg * std::numbers::pi / 180.0, spot.normal) *
+                  (spot.vertical ? hanging_axes(spot, map.up) : standing_axes(spot, object.face));
+  return pose;
+}
+
+/// On top of another object, turned by the yaw about their common axis.
+Anchor anchor_above(const PlacedObject& below, const SceneObject& object) {
+  Anchor anchor = below.anchor;
+  anchor.plane_from_anchor.translate(below.hangs ? Eigen::Vector3d(0.0, 0.0, below.sides.z())
+                                                 : Eigen::Vector3d(0.0, below.sides.y(), 0.0));
+  anchor.plane_from_anchor.rotate(
+      Eigen::AngleAxisd(object.yaw_deg * std::numbers::pi / 180.0,
+                        below.hangs ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitY()));
+  return anchor;
 }
 
 const PlaneRecord* largest(const Reconstruction& reconstruction,
@@ -150,9 +199,14 @@ Anchor move_anchor(const Anchor& anchor, const PlaneRecord& from, const PlaneRec
 
 std::optional<Eigen::Affine3d> PlacedObject::world_from_model(
     const std::vector<PlaneRecord>& planes) const {
-  const std::optional<slam::Pose> world_from_anchor = anchor.world_from_anchor(planes);
-  if (!world_from_anchor) return std::nullopt;
-  return Eigen::Affine3d(*world_from_anchor) * Eigen::Scaling(scale) *
+  if (anchor.plane_id == slam::kNone) return world_from_model(slam::Pose::Identity());
+  const PlaneRecord* plane = find_plane(planes, anchor.plane_id);
+  if (plane == nullptr) return std::nullopt;
+  return world_from_model(plane->world_from_plane());
+}
+
+Eigen::Affine3d PlacedObject::world_from_model(const slam::Pose& world_from_plane) const {
+  return Eigen::Affine3d(world_from_plane * anchor.plane_from_anchor) * Eigen::Scaling(scale) *
          Eigen::Translation3d(-contact);
 }
 
@@ -193,26 +247,40 @@ const PlaneRecord& select_plane(const Reconstruction& reconstruction, const std:
                   "'; planes: " + list_planes(reconstruction.planes));
 }
 
-PlacedObject place_object(const Reconstruction& reconstruction, const SceneObject& object,
-                          const ModelBox& box, const SizeUnit& unit, bool causal) {
-  const Spot spot = std::visit(
-      [&](const auto& place) { return resolve(reconstruction, place, causal, object.where); },
-      object.place);
-  const Eigen::Vector3d centre = box.center();
+const FoundMarker& select_marker(const MarkerMap& markers, const MarkerId& marker,
+                                 const std::string& where) {
+  const auto found = markers.find(marker);
+  if (found != markers.end()) return found->second;
+  throw UserError(where + ": marker " + std::to_string(marker.id) + " of " + marker.dictionary +
+                  " was not found in the pictures");
+}
+
+PlacedObject place_object(const PlacingWorld& world, const SceneObject& object, const ModelBox& box,
+                          const SizeUnit& unit, const PlacedObject* below) {
   PlacedObject placed;
   placed.scale = model_scale(object, box, unit);
-  placed.hangs = spot.vertical;
-  placed.contact = spot.vertical ? Eigen::Vector3d(centre.x(), centre.y(), box.min().z())
-                                 : Eigen::Vector3d(centre.x(), box.min().y(), centre.z());
-  slam::Pose world_from_anchor = slam::Pose::Identity();
-  world_from_anchor.translation() = spot.point;
-  world_from_anchor.linear() =
-      Eigen::AngleAxisd(object.yaw_deg * std::numbers::pi / 180.0, spot.normal) *
-      (spot.vertical ? hanging_axes(spot, reconstruction.up) : standing_axes(spot, object.face));
-  placed.anchor.plane_id = spot.plane != nullptr ? spot.plane->id : slam::kNone;
-  placed.anchor.plane_from_anchor =
-      spot.plane != nullptr ? spot.plane->world_from_plane().inverse() * world_from_anchor
-                            : world_from_anchor;
+  placed.sides = placed.scale * box.sizes();
+  if (below != nullptr) {
+    placed.hangs = below->hangs;
+    placed.tap = below->tap;
+    placed.anchor = anchor_above(*below, object);
+  } else {
+    const Spot spot = std::visit(
+        [&](const auto& place) { return resolve(world, place, object.where); }, object.place);
+    placed.hangs = spot.vertical;
+    placed.tap = spot.tap;
+    const slam::Pose world_from_anchor = world_from_spot(world.map, spot, object);
+    placed.anchor.plane_id = spot.plane ? spot.plane->id : slam::kNone;
+    placed.anchor.plane_from_anchor =
+        spot.plane ? spot.plane->world_from_plane().inverse() * world_from_anchor
+                   : world_from_anchor;
+  }
+  const Eigen::Vector3d centre = box.center();
+  placed.contact = placed.hangs ? Eigen::Vector3d(centre.x(), centre.y(), box.min().z())
+                                : Eigen::Vector3d(centre.x(), box.min().y(), centre.z());
+  if (object.offset != Eigen::Vector3d::Zero()) {
+    placed.anchor.plane_from_anchor.translate(object.offset * length_unit(object, unit));
+  }
   return placed;
 }
 

@@ -75,6 +75,12 @@ std::optional<double> YamlMap::number(const std::string& key) {
   return result;
 }
 
+std::optional<double> YamlMap::positive(const std::string& key) {
+  const std::optional<double> result = number(key);
+  if (result && *result <= 0.0) fail(key, "'" + key + "' must be positive");
+  return result;
+}
+
 std::optional<int> YamlMap::integer(const std::string& key) {
   const YAML::Node value = node(key);
   if (!value) return std::nullopt;
@@ -129,6 +135,18 @@ std::optional<std::vector<double>> YamlMap::numbers(const std::string& key, int 
     fail(key, "'" + key + "' must be a list of " + std::to_string(count) + " numbers");
   }
   return result;
+}
+
+std::optional<Eigen::Vector2d> YamlMap::vector2(const std::string& key) {
+  const std::optional<std::vector<double>> values = numbers(key, 2);
+  if (!values) return std::nullopt;
+  return Eigen::Vector2d((*values)[0], (*values)[1]);
+}
+
+std::optional<Eigen::Vector3d> YamlMap::vector3(const std::string& key) {
+  const std::optional<std::vector<double>> values = numbers(key, 3);
+  if (!values) return std::nullopt;
+  return Eigen::Vector3d((*values)[0], (*values)[1], (*values)[2]);
 }
 
 std::optional<YamlMap> YamlMap::map(const std::string& key) {

@@ -2,6 +2,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -22,6 +23,8 @@ class YamlMap {
   YAML::Node node(const std::string& key);
 
   std::optional<double> number(const std::string& key);
+  /// A number above 0.
+  std::optional<double> positive(const std::string& key);
   std::optional<int> integer(const std::string& key);
   std::optional<bool> boolean(const std::string& key);
   std::optional<std::string> text(const std::string& key);
@@ -30,6 +33,8 @@ class YamlMap {
                                     const std::vector<std::string>& allowed);
   /// A list of exactly `count` numbers.
   std::optional<std::vector<double>> numbers(const std::string& key, int count);
+  std::optional<Eigen::Vector2d> vector2(const std::string& key);
+  std::optional<Eigen::Vector3d> vector3(const std::string& key);
   std::optional<YamlMap> map(const std::string& key);
 
   /// Throws if a key was never asked for, or stands twice.

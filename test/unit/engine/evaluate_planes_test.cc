@@ -225,6 +225,45 @@ TEST_F(PlaneEvaluation, CausalPosesAreJudgedOnDemand) {
   EXPECT_NEAR(drift().aligned.drift_px.rms, 0.0, 1e-6);
 }
 
+TEST_F(PlaneEvaluation, CausalPlanesAreThoseOfTheirTime) {
+  // For half of the frames the whole map stood elsewhere; then a loop was closed.
+  slam::Pose elsewhere = slam::Pose::Identity();
+  elsewhere.translation() = Eigen::Vector3d(0.05, 0.02, -0.04);
+  elsewhere.linear() = Eigen::AngleAxisd(0.05, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  MapChange first;
+  MapChange second;
+  second.frame_index = 30;
+  second.new_from_old_world = elsewhere.inverse();
+  for (const PlaneRecord& plane : estimate.planes) {
+    first.planes.push_back({plane.id, elsewhere * plane.world_from_plane()});
+    second.planes.push_back({plane.id, plane.world_from_plane()});
+  }
+  estimate.map_changes = {first, second};
+  for (FrameRecord& frame : estimate.frames) {
+    frame.causal_world_from_cam =
+        frame.index < 30 ? elsewhere * *frame.world_from_cam : *frame.world_from_cam;
+  }
+  OverlayOptions options;
+  options.causal = true;
+  EXPECT_NEAR(drift(options).tapped.drift_px.max, 0.0, 1e-6);
+  estimate.map_changes.clear();
+  EXPECT_GT(drift(options).tapped.drift_px.max, 5.0);
+}
+
+TEST_F(PlaneEvaluation, NobodyTapsWhereTheMapHasNoSurface) {
+  const int everywhere = drift().tapped.drift_px.count;
+  // Only the nearer left half of the floor is known.
+  const slam::Pose plane_from_world = estimate.planes[0].world_from_plane().inverse();
+  for (Eigen::Vector3d& corner : estimate.planes[0].polygon) {
+    Eigen::Vector3d local = plane_from_world * corner;
+    local.x() = std::min(local.x(), 0.0);
+    corner = plane_from_world.inverse() * local;
+  }
+  const OverlayResult result = drift();
+  EXPECT_LT(result.tapped.drift_px.count, everywhere);
+  EXPECT_EQ(result.aligned.drift_px.count, drift().aligned.drift_px.count);
+}
+
 TEST_F(PlaneEvaluation, NoMatchGivesEmptyFigures) {
   estimate.planes.clear();
   const OverlayResult result = drift();

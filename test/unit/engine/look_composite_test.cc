@@ -181,11 +181,34 @@ TEST(Patches, OccludersAreSoundPlanesThatCarryNothing) {
   Content content;
   content.items = {item};
   EXPECT_EQ(plane_occluders(world, content).size(), 2U);
-  EXPECT_EQ(shadow_catchers(world, content).size(), 1U);
   plane_by_id(world, 2).inliers = 5;
   EXPECT_EQ(plane_occluders(world, content).size(), 1U);
   plane_by_id(world, 0).rms = 0.5;
   EXPECT_TRUE(plane_occluders(world, content).empty());
+}
+
+TEST(Patches, ShadowsFallOnPlanesNearTheContent) {
+  const Reconstruction world = table_world();
+  ContentItem item;
+  item.placed.anchor.plane_id = 0;
+  item.longest_side = 0.6;
+  Content content;
+  const auto caught_by = [&](const Eigen::Vector3d& place) {
+    content.items = {item};
+    content.items[0].placed.anchor.plane_from_anchor.translation() =
+        world.planes[0].world_from_plane().inverse() * place;
+    std::vector<int> ids;
+    for (const MapPatch& patch : shadow_catchers(world, content)) ids.push_back(patch.plane_id);
+    return ids;
+  };
+  // In the middle of the floor its own plane alone; the table is above it and faces away.
+  EXPECT_EQ(caught_by({1.5, 1.3, 1.0}), std::vector<int>{0});
+  // A metre before the wall the shadow may reach that too.
+  EXPECT_EQ(caught_by({1.5, 1.3, 3.0}), (std::vector<int>{0, 2}));
+  // From the table none falls through it onto the floor.
+  item.placed.anchor.plane_id = 1;
+  content.items = {item};
+  EXPECT_EQ(shadow_catchers(world, content).size(), 1U);
 }
 
 }  // namespace

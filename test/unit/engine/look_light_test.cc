@@ -78,6 +78,19 @@ TEST(Light, AWindowInViewIsWhereTheLightComesFrom) {
   EXPECT_GT(light.sun_direction.dot(kUp), 0.7);
 }
 
+TEST(Light, AWindowInViewThrowsDarkerAndLongerShadows) {
+  cv::Mat image(480, 640, CV_8UC3, cv::Scalar(90, 90, 90));
+  const SceneLight without = estimate_from(image);
+  cv::rectangle(image, {440, 20, 150, 140}, cv::Scalar(250, 250, 250), cv::FILLED);
+  const SceneLight with = estimate_from(image);
+  const auto sun_share = [](const SceneLight& light) {
+    const double sun = light.sun_radiance.y() * light.sun_direction.dot(kUp);
+    return sun / on_surface(light, kUp).y();
+  };
+  EXPECT_GT(sun_share(with), sun_share(without) + 0.2);
+  EXPECT_LT(with.sun_direction.dot(kUp), without.sun_direction.dot(kUp) - 0.05);
+}
+
 TEST(Light, WithoutPicturesStillShines) {
   const SceneLight light = LightEstimator().estimate(kUp);
   EXPECT_GT(on_surface(light, kUp).minCoeff(), 0.2);

@@ -3,9 +3,12 @@
 
 #include <cmath>
 #include <cstring>
+#include <numbers>
+#include <sstream>
 
 #include "engine/output/ear_clip.h"
 #include "engine/output/match_move.h"
+#include "engine/output/match_move_camera.h"
 #include "engine/output/report_svg.h"
 #include "test/unit/engine/output_test_files.h"
 
@@ -282,6 +285,56 @@ TEST(MatchMove, SameInputSameBytes) {
   write_match_move(sample_scene(), folder / "a.glb");
   write_match_move(sample_scene(), folder / "b.glb");
   EXPECT_TRUE(read_file(folder / "a.glb") == read_file(folder / "b.glb"));
+}
+
+TEST(MatchMove, ObjectsHaveTheirModelsOwnSpace) {
+  const TestFolder folder;
+  ObjectRecord object;
+  object.name = "robot";
+  object.file = "robot.glb";
+  object.box = Eigen::AlignedBox3d(Eigen::Vector3d(-1, 0, -2), Eigen::Vector3d(1, 3, 2));
+  object.world_from_model = Eigen::Translation3d(0.3, 1.0, 2.0) *
+                            Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 2, 0).normalized()) *
+                            Eigen::Scaling(0.1);
+  write_match_move(sample_scene(), folder / "scene.glb", {object});
+  const tinygltf::Model model = load(folder / "scene.glb");
+  const int index = node_index(model, "object robot");
+  ASSERT_GE(index, 0);
+  const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(index)];
+  EXPECT_EQ(node.extras.Get("file").Get<std::string>(), "robot.glb");
+  const auto& primitive = model.meshes[static_cast<std::size_t>(node.mesh)].primitives.at(0);
+  const Eigen::Affine3d world_from_node =
+      Eigen::Translation3d(node.translation[0], node.translation[1], node.translation[2]) *
+      quaternion(node.rotation) * Eigen::Scaling(node.scale[0]);
+  EXPECT_LT((world_from_node.matrix() - object.world_from_model.matrix()).norm(), 1e-6);
+  const std::vector<float> last = element(model, primitive.attributes.at("POSITION"), 7);
+  EXPECT_EQ(Eigen::Vector3d(last[0], last[1], last[2]), object.box.max());
+}
+
+TEST(MatchMove, ChanHasPlaceAnglesAndFieldOfView) {
+  const TestFolder folder;
+  const Reconstruction scene = sample_scene();
+  write_chan(scene, folder / "camera.chan");
+  std::istringstream in(read_file(folder / "camera.chan"));
+  const Eigen::Matrix3d turn = gltf_from_world(scene.up).toRotationMatrix();
+  int lines = 0;
+  int frame = 0;
+  Eigen::Vector3d t;
+  Eigen::Vector3d angles;
+  for (double fov = 0.0;
+       in >> frame >> t.x() >> t.y() >> t.z() >> angles.x() >> angles.y() >> angles.z() >> fov;
+       ++lines) {
+    const slam::Pose& pose = *scene.frames[static_cast<std::size_t>(frame - 1)].world_from_cam;
+    EXPECT_LT((t - turn * pose.translation()).norm(), 1e-6);
+    angles *= std::numbers::pi / 180.0;
+    const Eigen::Matrix3d rotation = (Eigen::AngleAxisd(angles.y(), Eigen::Vector3d::UnitY()) *
+                                      Eigen::AngleAxisd(angles.x(), Eigen::Vector3d::UnitX()) *
+                                      Eigen::AngleAxisd(angles.z(), Eigen::Vector3d::UnitZ()))
+                                         .toRotationMatrix();
+    EXPECT_LT((rotation - turn * pose.linear() * flip_yz()).norm(), 1e-6);
+    EXPECT_NEAR(fov, 2.0 * std::atan(240.0 / 530.0) * 180.0 / std::numbers::pi, 1e-6);
+  }
+  EXPECT_EQ(lines, 29);
 }
 
 TEST(Report, TopViewPutsTheViewingDirectionUpAndRightRight) {

@@ -101,10 +101,12 @@ TEST(ReconstructionFolder, HoldsTheFilesOfTheFormatAndNothingElse) {
     names.push_back(entry.path().filename().string());
   }
   std::sort(names.begin(), names.end());
-  const std::vector<std::string> expected = {"frames.csv",
+  const std::vector<std::string> expected = {"camera.chan",
+                                             "frames.csv",
                                              "keyframes.txt",
                                              "map.bin",
                                              "map.ply",
+                                             "map_changes.csv",
                                              "planes.json",
                                              "scene.glb",
                                              "summary.json",

@@ -87,6 +87,58 @@ TEST_F(SceneFileTest, ReadsEveryKey) {
   EXPECT_EQ(std::get<EdgeScale>(scene.scale->rule).length_m, 0.21);
 }
 
+TEST_F(SceneFileTest, ReadsTheKeysOfPlacesPostersAndLook) {
+  std::ofstream(folder_ / "models" / "p.jpg") << "x";
+  const SceneFile scene = read(
+      "ease: 4\nkeep_apart: false\n"
+      "look: {grain: off, blur: off, exposure: off, lens: off, clean_edges: off}\n"
+      "objects:\n"
+      "  - {name: base, model: ../models/a.glb, size: {metres: 0.2},\n"
+      "     place: {marker: {dictionary: 5x5_100, id: 42}, offset: [0, 0, 0.1]}}\n"
+      "  - {model: ../models/a.glb, place: {on: base}, size: {relative: 0.1}, loop: false, start: "
+      "2}\n"
+      "  - {poster: {image: ../models/p.jpg, width: 0.6}, place: {plane: largest-vertical}}\n"
+      "  - model: ../models/a.glb\n    place: {plane: 1}\n    yaw: 10\n"
+      "    instances: [{offset: [0.1, 0, 0]}, {offset: [0.2, 0, 0], yaw: 20, size: 0.5, start: "
+      "1}]\n"
+      "scale: {marker: {id: 7, size: 0.08}}\n");
+  EXPECT_EQ(scene.ease_frames, 4);
+  EXPECT_FALSE(scene.keep_apart);
+  EXPECT_FALSE(scene.look.grain || scene.look.blur || scene.look.exposure || scene.look.lens ||
+               scene.look.clean_edges);
+  ASSERT_EQ(scene.objects.size(), 5U);
+  const SceneObject& base = scene.objects[0];
+  EXPECT_EQ(std::get<MarkerPlace>(base.place).marker, (MarkerId{"5x5_100", 42}));
+  EXPECT_EQ(base.offset, Eigen::Vector3d(0, 0, 0.1));
+  EXPECT_EQ(base.unit, LengthUnit::kMetres);
+  EXPECT_EQ(std::get<ObjectPlace>(scene.objects[1].place).object, "base");
+  EXPECT_EQ(scene.objects[1].unit, LengthUnit::kRelative);
+  EXPECT_FALSE(scene.objects[1].loop);
+  EXPECT_EQ(scene.objects[1].start_s, 2.0);
+  ASSERT_TRUE(scene.objects[2].poster.has_value());
+  EXPECT_FALSE(scene.objects[2].poster->video);
+  EXPECT_EQ(scene.objects[2].size, 0.6);
+  EXPECT_EQ(scene.objects[4].offset, Eigen::Vector3d(0.2, 0, 0));
+  EXPECT_EQ(scene.objects[4].yaw_deg, 30.0);
+  EXPECT_EQ(scene.objects[4].size, 0.5);
+  EXPECT_EQ(scene.objects[4].start_s, 1.0);
+  EXPECT_EQ(markers_of(scene), (std::vector<MarkerId>{{"4x4_50", 7}, {"5x5_100", 42}}));
+}
+
+TEST_F(SceneFileTest, ReadsEveryScale) {
+  const auto scale = [this](const std::string& text) {
+    return read(object(kTap) + "scale: " + text + "\n").scale->rule;
+  };
+  EXPECT_EQ(std::get<PlaneDistanceScale>(scale("{plane_distance: 1.2, frame: 3}")).frame, 3);
+  EXPECT_EQ(std::get<CameraHeightScale>(scale("{camera_height: 1.6}")).height_m, 1.6);
+  const auto height =
+      std::get<HeightScale>(scale("{object: {frame: 4, foot: [1, 2], top: [3, 4], height: 0.25}}"));
+  EXPECT_EQ(height.foot, Eigen::Vector2d(1, 2));
+  EXPECT_EQ(height.top, Eigen::Vector2d(3, 4));
+  EXPECT_EQ(height.height_m, 0.25);
+  EXPECT_EQ(std::get<MarkerScale>(scale("{marker: {id: 3, size: 0.1}}")).size_m, 0.1);
+}
+
 TEST_F(SceneFileTest, DefaultsAreThoseOfTheManual) {
   const SceneFile scene = read(object(kTap));
   EXPECT_FALSE(scene.light.has_value());
@@ -125,11 +177,29 @@ TEST_F(SceneFileTest, WrongValuesAreNamedWithTheirLine) {
 TEST_F(SceneFileTest, MissingPartsAreNamed) {
   EXPECT_EQ(error_of("objects:\n  - model: nowhere.glb\n" + std::string(kTap)),
             "s.yaml:2: model 'nowhere.glb' not found");
+  EXPECT_EQ(error_of("objects:\n  - size: 2\n" + std::string(kTap)),
+            "s.yaml:2: object without 'model' or 'poster'");
   EXPECT_EQ(error_of("shadows: true\n"),
             "s.yaml:1: 'objects' must be a list of at least one object");
   EXPECT_EQ(error_of(object("    size: 1\n")), "s.yaml:2: object without 'place'");
   EXPECT_EQ(error_of(object("    place: {frame: 3}\n")),
             "s.yaml:3: 'place' needs both 'frame' and 'pixel'");
+}
+
+TEST_F(SceneFileTest, WrongReferencesAreNamed) {
+  EXPECT_EQ(error_of(object("    place: {on: base}\n")),
+            "s.yaml:2: no object before this one has the name 'base'");
+  EXPECT_EQ(error_of(object("    place: {marker: {dictionary: 9x9, id: 1}}\n"))
+                .rfind("s.yaml:3: 'dictionary' must be one of 4x4_50, ", 0),
+            0U);
+  EXPECT_EQ(error_of(object("    place: {marker: {id: 50}}\n")),
+            "s.yaml:3: 'id' must lie between 0 and 49");
+  EXPECT_EQ(error_of("objects:\n  - poster: {image: no.png}\n" + std::string(kTap)),
+            "s.yaml:2: image 'no.png' not found");
+  EXPECT_EQ(error_of("objects:\n  - poster: {width: 2}\n" + std::string(kTap)),
+            "s.yaml:2: 'poster' needs either 'image' or 'video'");
+  EXPECT_EQ(error_of(object(kTap) + "    size: {feet: 2}\n"), "s.yaml:4: unknown key 'feet'");
+  EXPECT_EQ(error_of(object(kTap) + "look: {grian: off}\n"), "s.yaml:4: unknown key 'grian'");
 }
 
 TEST_F(SceneFileTest, BrokenYamlIsOneLine) {

@@ -29,8 +29,20 @@ SceneObject object_at(const Place& place) {
 
 PixelPlace tap_on_table() { return {10, {319.5 + 500.0 * 0.2 / 1.6, 239.5 + 500.0 * 0.5 / 1.6}}; }
 
+const MarkerMap kNoMarkers;
+
+PlacedObject place(const Reconstruction& world, const SceneObject& object,
+                   const SizeUnit& unit = kMetres) {
+  return place_object({world, false, kNoMarkers}, object, kBox, unit);
+}
+
+SizeUnit unit_of(const Reconstruction& world, const SceneFile& scene,
+                 const MarkerMap& markers = kNoMarkers) {
+  return size_unit({world, false, markers}, scene, scene.objects[0]);
+}
+
 Eigen::Affine3d placed_pose(const Reconstruction& world, const SceneObject& object) {
-  return *place_object(world, object, kBox, kMetres, false).world_from_model(world.planes);
+  return *place(world, object).world_from_model(world.planes);
 }
 
 TEST(Placement, StandsOnThePlaneFacingTheCamera) {
@@ -78,7 +90,7 @@ TEST(Placement, KeepFollowsThePlanesAxis) {
 TEST(Placement, HangsOnWallsUpright) {
   const Reconstruction world = table_world();
   const SceneObject object = object_at(PlanePlace{"largest-vertical", {0.5, 0.5}});
-  const PlacedObject placed = place_object(world, object, kBox, kMetres, false);
+  const PlacedObject placed = place(world, object);
   EXPECT_TRUE(placed.hangs);
   const Eigen::Affine3d world_from_model = *placed.world_from_model(world.planes);
   // The centre of the back touches the wall's middle, front to the room, top up.
@@ -96,9 +108,7 @@ TEST(Placement, HangsOnWallsUpright) {
 TEST(Placement, SizesCountInMetresOrMedianDepths) {
   Reconstruction world = table_world();
   SceneObject object = object_at(tap_on_table());
-  const auto scale = [&](const SizeUnit& unit) {
-    return place_object(world, object, kBox, unit, false).scale;
-  };
+  const auto scale = [&](const SizeUnit& unit) { return place(world, object, unit).scale; };
   EXPECT_NEAR(scale(kMetres), 1.0, kExact);                  // its own size
   EXPECT_NEAR(scale({0.0, 2.0}), 0.25 * 2.0 / 0.8, kExact);  // a quarter of the median depth
   object.size = 0.4;
@@ -109,7 +119,7 @@ TEST(Placement, SizesCountInMetresOrMedianDepths) {
 
 TEST(Placement, AnchorsFollowTheirPlane) {
   Reconstruction world = table_world();
-  const PlacedObject placed = place_object(world, object_at(tap_on_table()), kBox, kMetres, false);
+  const PlacedObject placed = place(world, object_at(tap_on_table()));
   const slam::Pose before = *placed.anchor.world_from_anchor(world.planes);
   // A correction moves and turns the plane: content keeps its place and its upright stand on it.
   slam::Pose correction = slam::Pose::Identity();
@@ -129,7 +139,7 @@ TEST(Placement, AnchorsFollowTheirPlane) {
 
 TEST(Placement, MergesReExpressAnchors) {
   Reconstruction world = table_world();
-  const PlacedObject placed = place_object(world, object_at(tap_on_table()), kBox, kMetres, false);
+  const PlacedObject placed = place(world, object_at(tap_on_table()));
   PlaneRecord other = plane_by_id(world, 1);
   other.id = 9;
   other.origin += Eigen::Vector3d(0.4, 0.0, -0.2);
@@ -162,18 +172,94 @@ TEST(MetricScale, KnownLengthsGiveMetres) {
   world.metric = false;
   SceneFile scene;
   scene.objects.push_back(object_at(tap_on_table()));
-  EXPECT_EQ(size_unit(world, scene, scene.objects[0], false).units_per_metre, 0.0);
-  EXPECT_EQ(size_unit(world, scene, scene.objects[0], false).median_depth, 2.0);
+  EXPECT_EQ(unit_of(world, scene).units_per_metre, 0.0);
+  EXPECT_EQ(unit_of(world, scene).median_depth, 2.0);
   // The camera is 0.5 units above the table; the user measured 1.25 m.
   scene.scale = ScaleHint{PlaneDistanceScale{1.25, std::nullopt}, "s.yaml:9"};
-  EXPECT_NEAR(size_unit(world, scene, scene.objects[0], false).units_per_metre, 0.4, kExact);
+  EXPECT_NEAR(unit_of(world, scene).units_per_metre, 0.4, kExact);
   EdgeScale edge;
   edge.frame = 10;
   edge.from = world.camera.project({-0.3, 0.5, 1.5});
   edge.to = world.camera.project({0.3, 0.5, 1.5});
   edge.length_m = 1.2;
   scene.scale->rule = edge;
-  EXPECT_NEAR(size_unit(world, scene, scene.objects[0], false).units_per_metre, 0.5, kExact);
+  EXPECT_NEAR(unit_of(world, scene).units_per_metre, 0.5, kExact);
+  // A bottle stands on the table, 0.3 units high; the user knows that it is 0.25 m.
+  HeightScale bottle;
+  bottle.frame = 10;
+  bottle.foot = world.camera.project({0.1, 0.5, 1.5});
+  bottle.top = world.camera.project({0.1, 0.2, 1.5});
+  bottle.height_m = 0.25;
+  scene.scale->rule = bottle;
+  EXPECT_NEAR(unit_of(world, scene).units_per_metre, 1.2, kExact);
+  // The cameras are 1.3 units above the floor.
+  scene.scale->rule = CameraHeightScale{1.625, std::nullopt};
+  EXPECT_NEAR(unit_of(world, scene).units_per_metre, 0.8, kExact);
+  scene.scale->rule = CameraHeightScale{1.625, 12};
+  EXPECT_NEAR(unit_of(world, scene).units_per_metre, 0.8, kExact);
+  scene.scale->rule = MarkerScale{0.1, {"4x4_50", 3}};
+  MarkerMap markers;
+  markers[{"4x4_50", 3}].corners = {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0.2, 0, 0),
+                                    Eigen::Vector3d(0.2, 0, 0.2), Eigen::Vector3d(0, 0, 0.2)};
+  EXPECT_NEAR(unit_of(world, scene, markers).units_per_metre, 2.0, kExact);
+  EXPECT_THROW(unit_of(world, scene), UserError);
+}
+
+TEST(Placement, SizesCanNameTheirUnit) {
+  const Reconstruction world = table_world();
+  SceneObject object = object_at(tap_on_table());
+  object.size = 0.4;
+  object.unit = LengthUnit::kRelative;
+  EXPECT_NEAR(place(world, object).scale, 0.4 * 2.0 / 0.8, kExact);
+  object.unit = LengthUnit::kMetres;
+  EXPECT_NEAR(place(world, object, {3.0, 2.0}).scale, 1.5, kExact);
+  EXPECT_THROW(place(world, object, {0.0, 2.0}), UserError);
+}
+
+TEST(Placement, OffsetsGoAlongTheObjectsOwnAxes) {
+  const Reconstruction world = table_world();
+  SceneObject object = object_at(tap_on_table());
+  const Eigen::Affine3d before = placed_pose(world, object);
+  object.offset = Eigen::Vector3d(0.1, 0.05, 0.2);
+  object.yaw_deg = 30.0;
+  const Eigen::Affine3d after = placed_pose(world, object);
+  // Without a size the model keeps its own scale of 1, and metres are world units.
+  const Eigen::Vector3d moved =
+      after * Eigen::Vector3d(0.1, 0.1, 0.0) - before * Eigen::Vector3d(0.1, 0.1, 0.0);
+  EXPECT_LT((moved - after.linear() * object.offset).norm(), kExact);
+}
+
+TEST(Placement, StacksStandOnWhatIsBelow) {
+  const Reconstruction world = table_world();
+  const PlacedObject base = place(world, object_at(tap_on_table()));
+  SceneObject upper = object_at(ObjectPlace{"base"});
+  upper.size = 0.4;
+  upper.yaw_deg = 90.0;
+  const PlacedObject placed = place_object({world, false, kNoMarkers}, upper, kBox, kMetres, &base);
+  const Eigen::Vector3d foot =
+      *placed.world_from_model(world.planes) * Eigen::Vector3d(0.1, 0.1, 0.0);
+  EXPECT_LT((foot - Eigen::Vector3d(0.2, 0.5 - 0.8, 1.6)).norm(), kExact);
+  EXPECT_THROW(place(world, upper), UserError);
+}
+
+TEST(Placement, MarkersCarryTheirOwnAxes) {
+  const Reconstruction world = table_world();
+  MarkerMap markers;
+  FoundMarker& marker = markers[{"4x4_50", 3}];
+  marker.plane_id = 1;
+  const Eigen::Vector3d centre(0.1, 0.5, 1.4);
+  const Eigen::Vector3d right = Eigen::Vector3d(1, 0, 1).normalized() * 0.05;
+  const Eigen::Vector3d up = Eigen::Vector3d(-1, 0, 1).normalized() * 0.05;
+  marker.corners = {centre - right + up, centre + right + up, centre + right - up,
+                    centre - right - up};
+  SceneObject object = object_at(MarkerPlace{{"4x4_50", 3}});
+  object.face = Face::kKeep;
+  const PlacedObject placed = place_object({world, false, markers}, object, kBox, kMetres);
+  EXPECT_EQ(placed.anchor.plane_id, 1);
+  const Eigen::Affine3d pose = *placed.world_from_model(world.planes);
+  EXPECT_LT((pose * Eigen::Vector3d(0.1, 0.1, 0.0) - centre).norm(), kExact);
+  EXPECT_LT((pose.linear() * Eigen::Vector3d::UnitX() - right.normalized()).norm(), kExact);
+  EXPECT_THROW(place(world, object), UserError);
 }
 
 TEST(DefaultScene, PutsTheStandingModelOnTheTableInView) {
@@ -192,7 +278,7 @@ TEST(DefaultScene, PutsTheStandingModelOnTheTableInView) {
   ASSERT_EQ(scene.objects.size(), 1U);
   EXPECT_EQ(scene.objects[0].model, "stand.glb");
   EXPECT_EQ(std::get<PlanePlace>(scene.objects[0].place).plane, "1");
-  const PlacedObject placed = place_object(world, scene.objects[0], kBox, kMetres, false);
+  const PlacedObject placed = place(world, scene.objects[0]);
   const PlaneOutline outline = plane_outline(world.planes[1]);
   const Eigen::Vector2d at = placed.anchor.plane_from_anchor.translation().head<2>();
   EXPECT_TRUE(contains(outline, at));

@@ -31,6 +31,54 @@ objects:
 scale: {edge: {frame: 3, from: [1, 2], to: [30, 40.5], length: 0.42}}
 )";
 
+constexpr const char* kNewerKeys = R"(
+look: {grain: off, clean_edges: off}
+keep_apart: false
+ease: 3
+objects:
+  - name: base
+    model: a.glb
+    place: {marker: {dictionary: 5x5_100, id: 42}, offset: [0, 0.5, 0.1]}
+    size: {metres: 0.2}
+    loop: false
+    start: 1.5
+  - model: a.glb
+    place: {on: base}
+    size: {relative: 0.1}
+  - poster: {image: p.png, width: 0.6}
+    place: {plane: 3}
+scale: {object: {frame: 3, foot: [1, 2], top: [30, 40.5], height: 0.42}}
+)";
+
+TEST(WriteScene, KeepsPostersMarkersAndSwitches) {
+  const TestFolder folder;
+  write_file(folder / "a.glb", "not read here");
+  write_file(folder / "p.png", "not read here");
+  write_file(folder / "all.yaml", kNewerKeys);
+  const SceneFile scene = read_scene_file(folder / "all.yaml");
+  write_scene_file(scene, folder / "again.yaml");
+  const SceneFile again = read_scene_file(folder / "again.yaml");
+  EXPECT_FALSE(again.look.grain || again.look.clean_edges);
+  EXPECT_TRUE(again.look.blur && again.look.exposure && again.look.lens);
+  EXPECT_FALSE(again.keep_apart);
+  EXPECT_EQ(again.ease_frames, 3);
+  ASSERT_EQ(again.objects.size(), 3U);
+  const SceneObject& base = again.objects[0];
+  EXPECT_EQ(base.name, "base");
+  EXPECT_EQ(std::get<MarkerPlace>(base.place).marker, (MarkerId{"5x5_100", 42}));
+  EXPECT_EQ(base.offset, Eigen::Vector3d(0, 0.5, 0.1));
+  EXPECT_EQ(base.size, 0.2);
+  EXPECT_EQ(base.unit, LengthUnit::kMetres);
+  EXPECT_FALSE(base.loop);
+  EXPECT_EQ(base.start_s, 1.5);
+  EXPECT_EQ(std::get<ObjectPlace>(again.objects[1].place).object, "base");
+  EXPECT_EQ(again.objects[1].unit, LengthUnit::kRelative);
+  ASSERT_TRUE(again.objects[2].poster.has_value());
+  EXPECT_EQ(again.objects[2].size, 0.6);
+  EXPECT_EQ(std::get<HeightScale>(again.scale->rule).top, Eigen::Vector2d(30, 40.5));
+  EXPECT_EQ(scene_yaml(again, folder.path()), scene_yaml(scene, folder.path()));
+}
+
 TEST(WriteScene, ReadingBackGivesTheSameScene) {
   const TestFolder folder;
   write_file(folder / "a.glb", "not read here");

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <optional>
+#include <vector>
+
+#include "engine/pipeline/reconstruction.h"
+#include "engine/scene/content.h"
+#include "engine/scene/patches.h"
+#include "engine/scene/plane_motion.h"
+#include "engine/scene/scene_file.h"
+#include "render/scene.h"
+
+namespace planecast::engine {
+
+struct PlacedSceneOptions {
+  bool causal = false;  ///< everything follows its plane as it was known at each frame
+  int ease_frames = 8;
+  bool shadows = true;
+  Occlusion occlusion = Occlusion::kPlanes;
+};
+
+/// Content, shadow catchers and occluders over the frames of a sequence. Both references must
+/// outlive it.
+class PlacedScene {
+ public:
+  PlacedScene(const Reconstruction& reconstruction, const Content& content,
+              const PlacedSceneOptions& options);
+
+  /// Puts into `scene` what stands where at a frame; `time_s` since the first frame runs animations
+  /// and videos. In a causal run, what stands on a plane that is not known yet is left out.
+  void at(int frame_index, double time_s, render::LayerScene& scene);
+  /// Raw pixels that the objects (not their shadows) can cover at a frame, with room for
+  /// animations.
+  cv::Rect bounds(int frame_index, const slam::Camera& camera,
+                  const slam::Pose& world_from_cam) const;
+
+ private:
+  std::optional<slam::Pose> world_from_plane(int plane_id, int frame_index) const;
+  /// World from the frame of the plane that the item stands on.
+  std::optional<slam::Pose> world_from_plane_of(std::size_t item, int frame_index) const;
+  void place_patches(const std::vector<MapPatch>& from, int frame_index,
+                     std::vector<render::PlanePatch>& to) const;
+
+  const Reconstruction& reconstruction_;
+  const Content& content_;
+  std::vector<MapPatch> catchers_;
+  std::vector<MapPatch> occluders_;
+  std::optional<PlaneMotion> motion_;  ///< causal
+  /// Causal, by item, empty where it was not placed by a tap: as world_from_plane_of() by position
+  /// of the frame.
+  std::vector<std::vector<std::optional<slam::Pose>>> under_tap_;
+};
+
+}  // namespace planecast::engine
