@@ -8,6 +8,7 @@
 #include "engine/evaluate/masks.h"
 #include "engine/evaluate/overlay.h"
 #include "engine/evaluate/planes.h"
+#include "engine/evaluate/tracks.h"
 #include "engine/evaluate/trajectory.h"
 #include "engine/evaluate/truth.h"
 #include "engine/pipeline/reconstruction_io.h"
@@ -26,11 +27,14 @@ struct EvaluateCommand {
   std::string reconstruction;
   std::string align;  ///< empty: by the reconstruction's scale; sim3 for trajectories
   bool causal = false;
+  InputOptions input;            ///< of tracks
+  engine::TrackOptions anchors;  ///< of tracks
 
   int trajectory() const;
   int planes() const;
   int overlay() const;
   int masks() const;
+  int tracks() const;
 
  private:
   template <typename Result>
@@ -99,6 +103,12 @@ int EvaluateCommand::masks() const {
   return print_found(engine::evaluate_masks(estimate, *truth));
 }
 
+int EvaluateCommand::tracks() const {
+  const engine::Reconstruction map = engine::read_reconstruction(reconstruction);
+  const std::unique_ptr<engine::Sequence> sequence = input.open();
+  return print_found(engine::evaluate_tracks(map, *sequence, anchors));
+}
+
 void add_shared_options(CLI::App& command, EvaluateCommand& options) {
   command
       .add_option("--align", options.align,
@@ -123,6 +133,23 @@ void add_masks_command(CLI::App& evaluate, std::shared_ptr<EvaluateCommand> opti
   set_examples(*masks, {{"planecast evaluate masks --estimate out/masks --groundtruth tabletop",
                          "Masks of `planecast segment` against the sequence's own"}});
   masks->callback([options, &action] { action = [options] { return options->masks(); }; });
+}
+
+void add_tracks_command(CLI::App& evaluate, std::shared_ptr<EvaluateCommand> options,
+                        Action& action) {
+  CLI::App* tracks = evaluate.add_subcommand(
+      "tracks", "How anchored points keep to the picture's texture, without a truth");
+  tracks->add_option("--reconstruction", options->reconstruction, "Reconstruction folder")
+      ->required();
+  add_input_options(*tracks, options->input);
+  tracks->add_option("--frame", options->anchors.frame, "Frame where the points are anchored");
+  tracks->add_option("--plane", options->anchors.plane, "Plane id or rule (as in scene files)");
+  tracks->add_option("--points", options->anchors.points, "How many")->capture_default_str();
+  add_json_option(*tracks, options->common);
+  add_common_options(*tracks, options->common);
+  set_examples(*tracks, {{"planecast evaluate tracks desk --reconstruction out/map",
+                          "Whether content would slide, for recordings without a truth"}});
+  tracks->callback([options, &action] { action = [options] { return options->tracks(); }; });
 }
 
 }  // namespace
@@ -175,6 +202,7 @@ void add_evaluate(CLI::App& app, Action& action) {
   add_map_command("overlay", "Drift and jitter of content in pixels", &EvaluateCommand::overlay)
       ->add_flag("--causal", options->causal, "Judge the poses as they were known at their frames");
   add_masks_command(*command, options, action);
+  add_tracks_command(*command, options, action);
 }
 
 }  // namespace planecast::app
