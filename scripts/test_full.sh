@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what only the long tests need, builds everything and runs them (label `full`): shells,
-# batches by GNU parallel and Slurm, packages in a bare Debian, then SLAM
+# batches by GNU parallel and Slurm, packages in a bare Debian, Blender, then SLAM
 # with the sanitizers (build/asan, build/tsan). The quick ones are scripts/test.sh.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -10,6 +10,7 @@ scripts/setup.sh \
   parallel \
   slurmctld slurmd slurm-client munge \
   debootstrap dpkg-dev \
+  blender python3-numpy \
   chromium chromium-driver python3-selenium xvfb xdotool
 scripts/build.sh release
 scripts/build.sh release system_test
