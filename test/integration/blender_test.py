@@ -6,6 +6,7 @@ Usage: blender_test.py PLANECAST WORK_FOLDER [unittest arguments]
 """
 
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -73,7 +74,9 @@ class InBlender(unittest.TestCase):
         done = subprocess.run(
             ["blender", "-b", "--python-exit-code", "1", "-P", str(SCRIPT), "--",
              str(out / "scene.glb"), "--pixels", str(request), str(answer)],
-            capture_output=True, text=True, timeout=600)
+            capture_output=True, text=True, timeout=600,
+            # Blender's own interpreter takes its modules from where the first python in PATH has them.
+            env={**os.environ, "PATH": "/usr/local/bin:/usr/bin:/bin"})
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         seen = json.loads(answer.read_text(encoding="utf-8"))
         compared = 0

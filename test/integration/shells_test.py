@@ -85,7 +85,7 @@ class Fish(unittest.TestCase):
     def test_commands_options_and_values(self):
         self.assertEqual(self.offers("planecast ru"), ["run"])
         self.assertEqual(set(self.offers("planecast evaluate ")),
-                         {"trajectory", "planes", "overlay", "masks"})
+                         {"trajectory", "planes", "overlay", "masks", "tracks"})
         self.assertEqual(self.offers("planecast run desk --plane-m"), ["--plane-merge"])
         self.assertEqual(set(self.offers("planecast track --mode ")), {"auto", "mono", "rgbd"})
         self.assertEqual(self.offers("planecast synth tablet"), ["tabletop"])
@@ -104,7 +104,7 @@ class Zsh(unittest.TestCase):
         shell.type("source setup; print REA''DY\n")
         self.assertIn("READY", shell.read_until("READY"))
         for line, offered in (("planecast ru", {"run"}),
-                              ("planecast evaluate ", {"trajectory", "planes", "overlay", "masks"}),
+                              ("planecast evaluate ", {"trajectory", "planes", "overlay", "masks", "tracks"}),
                               ("planecast run desk --plane-m", {"--plane-merge"}),
                               ("planecast track --mode ", {"mono", "rgbd", "auto"}),
                               ("planecast synth tablet", {"tabletop"}),
