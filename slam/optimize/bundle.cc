@@ -15,7 +15,7 @@ constexpr int kRobustIterations = 5;
 /// Where the local bundle's passes end. The first has only to tell outliers; for the second, 1e-4
 /// of the cost is far less than one standard deviation of any pose, and the next keyframe goes on
 /// from it.
-constexpr double kLocalRobustTolerance = 1e-3;
+constexpr double kLocalRobustTolerance = 1e-1;
 constexpr double kLocalTolerance = 1e-4;
 constexpr double kGlobalTolerance = 1e-5;
 

@@ -14,12 +14,30 @@ namespace {
 constexpr int kMaxDenseKeyframes = 120;
 constexpr double kMinDistance = 1e-9;
 
-std::vector<int> index_by_id(const std::vector<KeyframeId>& keyframes, int next_id) {
+/// Per landmark id its place in `landmarks`, kNone for all others.
+std::vector<int> index_by_id(const std::vector<LandmarkId>& landmarks, int next_id) {
   std::vector<int> index(static_cast<std::size_t>(next_id), kNone);
-  for (std::size_t i = 0; i < keyframes.size(); ++i) {
-    index[static_cast<std::size_t>(keyframes[i])] = static_cast<int>(i);
+  for (std::size_t i = 0; i < landmarks.size(); ++i) {
+    index[static_cast<std::size_t>(landmarks[i])] = static_cast<int>(i);
   }
   return index;
+}
+
+/// Calls visit(pose, point, keypoint) for every sight of the landmarks by the keyframes, along each
+/// keyframe's keypoints as they lie in memory.
+template <typename Visit>
+void visit_sights(const Map& map, const std::vector<KeyframeId>& keyframes,
+                  const std::vector<int>& point_of, const Visit& visit) {
+  for (std::size_t pose = 0; pose < keyframes.size(); ++pose) {
+    const Keyframe& keyframe = map.keyframes.at(keyframes[pose]);
+    for (std::size_t k = 0; k < keyframe.landmarks.size(); ++k) {
+      const LandmarkId landmark = keyframe.landmarks[k];
+      if (landmark == kNone) continue;
+      const int point = point_of[static_cast<std::size_t>(landmark)];
+      if (point == kNone) continue;
+      visit(pose, static_cast<std::size_t>(point), keyframe.features->keypoints[k]);
+    }
+  }
 }
 
 std::vector<Pose> pose_matrices(const BundleProblem& problem) {
@@ -87,34 +105,41 @@ BundleProblem collect_bundle(const Map& map, const Camera& camera,
   for (int octave = 0; octave < options.levels.levels; ++octave) {
     sigma_px.push_back(options.levels.sigma_px(octave));
   }
-  const std::vector<int> index = index_by_id(keyframes, map.keyframes.next_id());
-  for (const LandmarkId id : landmarks) {
-    const Landmark& landmark = map.landmarks.at(id);
-    const std::size_t begin = problem.observations.size();
-    bool depth = false;
-    for (const Observation& observation : landmark.observations) {
-      const int pose = index[static_cast<std::size_t>(observation.keyframe)];
-      if (pose == kNone) continue;
-      const Keypoint& keypoint =
-          map.keyframes.at(observation.keyframe)
-              .features->keypoints[static_cast<std::size_t>(observation.keypoint)];
-      const auto octave = static_cast<std::size_t>(
-          std::clamp(keypoint.octave, 0, static_cast<int>(sigma_px.size()) - 1));
-      problem.observations.push_back(
-          {pose, static_cast<int>(problem.points.size()),
-           ReprojectionTerm(camera, options.depth_baseline_m, keypoint.pixel.cast<double>(),
-                            sigma_px[octave], keypoint.depth),
-           true});
-      depth = depth || keypoint.depth > 0.0F;
-    }
-    if (!is_determined(static_cast<int>(problem.observations.size() - begin), depth)) {
-      problem.observations.erase(problem.observations.begin() + static_cast<std::ptrdiff_t>(begin),
-                                 problem.observations.end());
-      continue;
-    }
-    problem.landmarks.push_back(id);
-    problem.points.push_back(landmark.position);
+  const std::vector<int> point_of = index_by_id(landmarks, map.landmarks.next_id());
+  std::vector<int> sights(landmarks.size(), 0);
+  std::vector<char> depth(landmarks.size(), 0);
+  visit_sights(map, keyframes, point_of,
+               [&](std::size_t, std::size_t point, const Keypoint& keypoint) {
+                 ++sights[point];
+                 if (keypoint.depth > 0.0F) depth[point] = 1;
+               });
+  // Where each landmark's sights go; one that is not determined has no place.
+  std::vector<int> point_index(landmarks.size(), kNone);
+  std::vector<std::size_t> next(landmarks.size(), 0);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < landmarks.size(); ++i) {
+    if (!is_determined(sights[i], depth[i] != 0)) continue;
+    point_index[i] = static_cast<int>(problem.points.size());
+    next[i] = count;
+    count += static_cast<std::size_t>(sights[i]);
+    problem.landmarks.push_back(landmarks[i]);
+    problem.points.push_back(map.landmarks.at(landmarks[i]).position);
   }
+  problem.observations.assign(
+      count,
+      {0, 0, ReprojectionTerm(camera, options.depth_baseline_m, {0.0, 0.0}, 1.0, 0.0), true});
+  visit_sights(map, keyframes, point_of,
+               [&](std::size_t pose, std::size_t point, const Keypoint& keypoint) {
+                 if (point_index[point] == kNone) return;
+                 const auto octave = static_cast<std::size_t>(
+                     std::clamp(keypoint.octave, 0, static_cast<int>(sigma_px.size()) - 1));
+                 BundleObservation& seen = problem.observations[next[point]++];
+                 seen.pose = static_cast<int>(pose);
+                 seen.point = point_index[point];
+                 seen.term.pixel = keypoint.pixel.cast<double>();
+                 seen.term.inverse_sigma = 1.0 / sigma_px[octave];
+                 if (keypoint.depth > 0.0F) seen.term.inverse_depth = 1.0 / keypoint.depth;
+               });
   return problem;
 }
 
