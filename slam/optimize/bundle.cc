@@ -1,6 +1,7 @@
 #include "slam/optimize/bundle.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -55,6 +56,7 @@ struct Schedule {
   double robust_tolerance = kGlobalTolerance;
   double tolerance = kGlobalTolerance;
   bool refine_focal = false;
+  double focal_sigma = 0.0;
   bool window = false;  ///< by solve_window
 };
 
@@ -64,6 +66,7 @@ int solve(BundleProblem& problem, const Schedule& schedule, bool robust) {
   if (schedule.window) return solve_window(problem, {iterations, robust, tolerance});
   BundleSolve options;
   options.refine_focal = schedule.refine_focal;
+  options.focal_sigma = schedule.focal_sigma;
   options.iterations = iterations;
   options.robust = robust;
   options.function_tolerance = tolerance;
@@ -181,6 +184,7 @@ BundleResult global_bundle(Map& map, Camera& camera, const BundleOptions& option
   schedule.robust_iterations = options.iterations;
   schedule.iterations = options.iterations;
   schedule.refine_focal = options.refine_focal;
+  schedule.focal_sigma = options.focal_sigma * std::sqrt(options.focal_independence);
   const BundleResult result = run_bundle(problem, schedule, map);
   camera.fx *= result.focal_factor;
   camera.fy *= result.focal_factor;

@@ -13,6 +13,13 @@ struct BundleOptions {
   int max_local_keyframes = 12;    ///< free keyframes of the local bundle, best covisible first
   int max_fixed_keyframes = 20;    ///< seen by the same landmarks, held
   bool refine_focal = false;       ///< global only: one common factor on fx and fy
+  /// Spread of a guessed focal length, as a share of it: a field of view of 60 degrees stands for
+  /// 55 to 66.
+  double focal_sigma = 0.1;
+  /// What the views say of the focal length counts for this share of its weight: their residuals
+  /// are not independent, as all share the errors of a principal point and a lens that nobody
+  /// knows.
+  double focal_independence = 0.1;
   ScaleLevels levels;
 };
 

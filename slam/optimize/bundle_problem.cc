@@ -197,7 +197,11 @@ int solve_bundle(BundleProblem& problem, const BundleSolve& solve) {
     ceres_problem.SetManifold(problem.poses[i].data(), &manifold);
     if (problem.fixed[i]) ceres_problem.SetParameterBlockConstant(problem.poses[i].data());
   }
-  if (solve.refine_focal) ordering.AddElementToGroup(&problem.focal_factor, kFocalGroup);
+  FocalPriorCost focal_prior(solve.focal_sigma);
+  if (solve.refine_focal) {
+    ordering.AddElementToGroup(&problem.focal_factor, kFocalGroup);
+    ceres_problem.AddResidualBlock(&focal_prior, nullptr, &problem.focal_factor);
+  }
   if (solve.extend) solve.extend(ceres_problem, ordering);
   ceres::Solver::Summary summary;
   ceres::Solve(options, &ceres_problem, &summary);

@@ -60,6 +60,7 @@ struct BundleSolve {
   int iterations = 10;
   bool robust = true;  ///< Huber
   bool refine_focal = false;
+  double focal_sigma = 0.03;         ///< of the factor on the focal length about 1
   double function_tolerance = 1e-5;  ///< relative change of the cost that ends it
   /// Adds further residuals and parameter blocks; what they are made of must outlive the call.
   std::function<void(ceres::Problem&, ceres::ParameterBlockOrdering&)> extend;

@@ -95,6 +95,21 @@ class FocalReprojectionCost final : public ceres::SizedCostFunction<kRows, 7, 3,
   ReprojectionTerm term_;
 };
 
+/// (focal factor - 1) / sigma. Block: focal factor (1).
+class FocalPriorCost final : public ceres::SizedCostFunction<1, 1> {
+ public:
+  explicit FocalPriorCost(double sigma) : inverse_sigma_(1.0 / sigma) {}
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    residuals[0] = inverse_sigma_ * (parameters[0][0] - 1.0);
+    if (jacobians != nullptr && jacobians[0] != nullptr) jacobians[0][0] = inverse_sigma_;
+    return true;
+  }
+
+ private:
+  double inverse_sigma_;
+};
+
 /// (normal . point + offset) / sigma. Blocks: point (3), unit normal (3), offset (1).
 class PointPlaneCost final : public ceres::SizedCostFunction<1, 3, 3, 1> {
  public:

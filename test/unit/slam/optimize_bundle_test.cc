@@ -139,6 +139,38 @@ TEST(GlobalBundle, RefinesAFocalLengthThatIsFivePercentOff) {
   }
 }
 
+TEST(GlobalBundle, KeepsTheGuessWhereTheViewsLeaveTheFocalLengthOpen) {
+  // A camera that moves along a wall without turning: a longer lens and a farther wall look alike.
+  Random random(seed_of("GlobalBundle.KeepsTheGuessWhereTheViewsLeaveTheFocalLengthOpen"));
+  std::vector<Eigen::Vector3d> wall;
+  for (int i = 0; i < 200; ++i) {
+    wall.emplace_back(random.uniform() * 4.0 - 2.0, random.uniform() * 3.0 - 1.5, 4.0);
+  }
+  MapOptions options;
+  MapScene scene = make_map(wall, options, random);
+  for (Keyframe& keyframe : scene.map.keyframes) {
+    keyframe.cam_from_world = pose_at({0.1 * keyframe.id, 0.0, 0.0}, {0.0, 0.0, 0.0});
+    auto features = std::make_shared<Features>(*keyframe.features);
+    for (std::size_t k = 0; k < features->keypoints.size(); ++k) {
+      const Eigen::Vector3d& point = scene.map.landmarks.at(keyframe.landmarks[k]).position;
+      features->keypoints[k].pixel =
+          noisy(scene.camera.project(keyframe.cam_from_world * point), 0.3, random).cast<float>();
+    }
+    keyframe.features = features;
+  }
+  BundleOptions bundle;
+  bundle.refine_focal = true;
+  bundle.iterations = 30;
+  Map free_map = scene.map;
+  Camera free_camera = scene.camera;
+  bundle.focal_sigma = 1e3;
+  const double without = std::abs(global_bundle(free_map, free_camera, bundle).focal_factor - 1.0);
+  bundle.focal_sigma = BundleOptions().focal_sigma;
+  const double with = std::abs(global_bundle(scene.map, scene.camera, bundle).focal_factor - 1.0);
+  EXPECT_LT(with, 0.5 * bundle.focal_sigma);
+  EXPECT_LT(with, without);
+}
+
 TEST(GlobalBundle, SurvivesPointsBehindCamerasAndAnEmptyMap) {
   Random random(seed_of("GlobalBundle.SurvivesPointsBehindCamerasAndAnEmptyMap"));
   MapScene scene = make_box_map({}, random);

@@ -101,6 +101,12 @@ TEST(ReprojectionCost, JacobiansAreTheNumericOnes) {
   }
 }
 
+TEST(FocalPriorCost, JacobianIsTheNumericOne) {
+  for (const double factor : {0.8, 1.0, 1.3}) {
+    check_jacobians(FocalPriorCost(0.1), {{{factor}}, {nullptr}});
+  }
+}
+
 TEST(PointPlaneCost, JacobiansAreTheNumericOnes) {
   Random random(seed_of("PointPlaneCost.JacobiansAreTheNumericOnes"));
   for (int i = 0; i < 20; ++i) {
