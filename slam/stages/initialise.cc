@@ -134,17 +134,14 @@ FollowedCorners MonoInitialiser::followed() const {
 }
 
 std::optional<StartBundle> MonoInitialiser::bundle_since_reference(
-    const TwoViewResult& two_view) const {
-  const bool enough_parallax =
-      two_view.failure == TwoViewFailure::kNone ||
-      (two_view.failure == TwoViewFailure::kTooLittleParallax &&
-       two_view.parallax_deg >= options_.bundle_parallax_deg &&
-       two_view.runner_up_good < options_.bundle_runner_up_ratio * two_view.good);
-  if (!options_.by_patches || !enough_parallax) return std::nullopt;
-  std::optional<StartBundle> bundle =
-      bundle_start(camera_, followed(), two_view.cur_from_ref, options_.start_bundle);
-  if (!bundle || !bundle->good) return std::nullopt;
-  return bundle;
+    const TwoViewResult& two_view, const std::vector<Pose>& candidates) const {
+  const bool may_start = two_view.failure == TwoViewFailure::kNone ||
+                         two_view.failure == TwoViewFailure::kTooLittleParallax ||
+                         two_view.failure == TwoViewFailure::kAmbiguous;
+  if (!options_.by_patches || !may_start || two_view.parallax_deg < options_.bundle_parallax_deg) {
+    return std::nullopt;
+  }
+  return bundle_best_start(camera_, followed(), candidates, options_.start_bundle);
 }
 
 void MonoInitialiser::match_descriptors(const ImageFeatures& image, Matches& matches) {
@@ -181,8 +178,8 @@ void MonoInitialiser::place_tracks(ImageFeatures& image, Matches& matches) {
 }
 
 TwoViewResult MonoInitialiser::solve(const std::vector<PointPair>& pairs,
-                                     const std::vector<float>& quality,
-                                     bool& used_homography) const {
+                                     const std::vector<float>& quality, bool& used_homography,
+                                     std::vector<Pose>& candidates) const {
   std::future<std::optional<FundamentalResult>> fundamental_task =
       std::async(std::launch::async, [&] {
         FundamentalOptions options;
@@ -210,12 +207,14 @@ TwoViewResult MonoInitialiser::solve(const std::vector<PointPair>& pairs,
 
   used_homography =
       homography_score / (homography_score + fundamental_score) > options_.homography_share;
-  if (used_homography) {
-    return select_relative_pose(decompose_homography(homography->cur_H_ref, camera_), pairs,
-                                homography_inlier, camera_, options_.two_view);
-  }
-  return select_relative_pose(decompose_fundamental(fundamental->cur_F_ref, camera_), pairs,
-                              fundamental->inlier, camera_, options_.two_view);
+  std::vector<Pose> of_homography, of_fundamental;
+  if (homography) of_homography = decompose_homography(homography->cur_H_ref, camera_);
+  if (fundamental) of_fundamental = decompose_fundamental(fundamental->cur_F_ref, camera_);
+  candidates = of_homography;
+  candidates.insert(candidates.end(), of_fundamental.begin(), of_fundamental.end());
+  return select_relative_pose(used_homography ? of_homography : of_fundamental, pairs,
+                              used_homography ? homography_inlier : fundamental->inlier, camera_,
+                              options_.two_view);
 }
 
 Map MonoInitialiser::two_keyframes(const ImageFeatures& image, const Matches& matches,
@@ -262,8 +261,10 @@ InitialiseResult MonoInitialiser::try_image(ImageFeatures& image, Map& map) {
     result.reason = set_reference(image) ? "too few matches" : "too few features";
     return result;
   }
-  TwoViewResult two_view = solve(matches.pairs, matches.quality, result.used_homography);
-  const std::optional<StartBundle> bundle = bundle_since_reference(two_view);
+  std::vector<Pose> candidates;
+  TwoViewResult two_view =
+      solve(matches.pairs, matches.quality, result.used_homography, candidates);
+  const std::optional<StartBundle> bundle = bundle_since_reference(two_view, candidates);
   if (bundle) {
     two_view.failure = TwoViewFailure::kNone;
     two_view.cur_from_ref = bundle->newest_from_ref;

@@ -35,7 +35,6 @@ struct InitialiseOptions {
   /// Two views with less parallax than two_view asks for, but at least this, may still start if all
   /// frames since the reference together fix the depths (by_patches alone).
   double bundle_parallax_deg = 0.4;
-  double bundle_runner_up_ratio = 0.5;  ///< as TwoViewOptions::max_runner_up_ratio, for those
   StartBundleOptions start_bundle;
   std::uint64_t seed = 1;
   ScaleLevels levels;
@@ -74,7 +73,9 @@ class MonoInitialiser {
   void match_tracks(const ImageFeatures& image, Matches& matches);
   /// The corners that are still followed, in every image since the reference.
   FollowedCorners followed() const;
-  std::optional<StartBundle> bundle_since_reference(const TwoViewResult& two_view) const;
+  /// A start from all frames since the reference, where two views alone do not do.
+  std::optional<StartBundle> bundle_since_reference(const TwoViewResult& two_view,
+                                                    const std::vector<Pose>& candidates) const;
   void match_descriptors(const ImageFeatures& image, Matches& matches);
   /// Gives the image's keypoints to matches found by patches; those without one are left out (-1).
   void place_tracks(ImageFeatures& image, Matches& matches);
@@ -82,8 +83,9 @@ class MonoInitialiser {
                     const TwoViewResult& two_view) const;
   /// Bundle adjustment of the two keyframes; false where it does not fit.
   bool adjust(Map& start);
+  /// The relative pose of the better model; `candidates`: those of both.
   TwoViewResult solve(const std::vector<PointPair>& pairs, const std::vector<float>& quality,
-                      bool& used_homography) const;
+                      bool& used_homography, std::vector<Pose>& candidates) const;
 
   InitialiseOptions options_;
   Camera camera_;

@@ -40,8 +40,9 @@ class Builder {
         corners_(corners),
         frames_(chosen_frames(corners.pixels.size(), options.max_frames)) {}
 
-  /// Points from the reference and the newest frame, poses of those between from the points.
-  bool build(const Pose& newest_from_ref) {
+  /// Points from the reference and the newest frame, poses of those between from the points. False
+  /// with fewer than `least` points in front of both.
+  bool build(const Pose& newest_from_ref, double least) {
     const std::vector<Eigen::Vector2d>& first = corners_.pixels.front();
     const std::vector<Eigen::Vector2d>& last = corners_.pixels.back();
     for (std::size_t c = 0; c < first.size(); ++c) {
@@ -50,7 +51,7 @@ class Builder {
       corner_of_.push_back(c);
       problem_.points.push_back(*point);
     }
-    if (problem_.points.size() < 3) return false;
+    if (static_cast<double>(problem_.points.size()) < std::max(3.0, least)) return false;
     const auto span = static_cast<double>(corners_.pixels.size() - 1);
     for (std::size_t f = 0; f < frames_.size(); ++f) {
       const Pose guess = share_of(newest_from_ref, static_cast<double>(frames_[f]) / span);
@@ -213,7 +214,56 @@ double residual_variance(const BundleProblem& problem) {
   return sum / std::max(1.0, static_cast<double>(rows) - static_cast<double>(unknowns));
 }
 
+/// Every so many corners.
+FollowedCorners some_of(const FollowedCorners& all, int most) {
+  const std::size_t count = all.sigma_px.size();
+  const std::size_t every = std::max<std::size_t>(1, count / static_cast<std::size_t>(most));
+  FollowedCorners some;
+  some.pixels.resize(all.pixels.size());
+  for (std::size_t c = 0; c < count; c += every) {
+    some.sigma_px.push_back(all.sigma_px[c]);
+    for (std::size_t f = 0; f < all.pixels.size(); ++f) {
+      some.pixels[f].push_back(all.pixels[f][c]);
+    }
+  }
+  return some;
+}
+
+/// Whether two relative poses of unknown scale are one.
+bool is_same(const Pose& a, const Pose& b) {
+  constexpr double kSameTurn = 0.003;  // radians
+  constexpr double kSameWay = 0.98;    // cosine
+  const Eigen::AngleAxisd turn(a.linear() * b.linear().transpose());
+  return turn.angle() < kSameTurn &&
+         a.translation().normalized().dot(b.translation().normalized()) > kSameWay;
+}
+
 }  // namespace
+
+std::optional<StartBundle> bundle_best_start(const Camera& camera, const FollowedCorners& corners,
+                                             const std::vector<Pose>& newest_from_ref,
+                                             const StartBundleOptions& options) {
+  const FollowedCorners some = some_of(corners, options.trial_corners);
+  std::vector<StartBundle> trials;
+  std::size_t best = 0;
+  for (const Pose& candidate : newest_from_ref) {
+    std::optional<StartBundle> trial = bundle_start(camera, some, candidate, options);
+    if (!trial) continue;
+    trials.push_back(*std::move(trial));
+    if (trials.back().variance < trials[best].variance) best = trials.size() - 1;
+  }
+  if (trials.empty()) return std::nullopt;
+  for (const StartBundle& trial : trials) {
+    if (!is_same(trial.newest_from_ref, trials[best].newest_from_ref) &&
+        trial.variance < options.min_variance_ratio * trials[best].variance) {
+      return std::nullopt;
+    }
+  }
+  std::optional<StartBundle> result =
+      bundle_start(camera, corners, trials[best].newest_from_ref, options);
+  if (result && !result->good) result.reset();
+  return result;
+}
 
 std::optional<StartBundle> bundle_start(const Camera& camera, const FollowedCorners& corners,
                                         const Pose& newest_from_ref,
@@ -222,7 +272,9 @@ std::optional<StartBundle> bundle_start(const Camera& camera, const FollowedCorn
     return std::nullopt;
   }
   Builder builder(camera, corners, options);
-  if (!builder.build(newest_from_ref)) return std::nullopt;
+  const auto least = std::max(static_cast<double>(options.min_points),
+                              options.min_share * static_cast<double>(corners.sigma_px.size()));
+  if (!builder.build(newest_from_ref, least)) return std::nullopt;
   BundleProblem& problem = builder.problem();
   constexpr int kIterations = 10;
   deactivate_outliers(problem, std::numeric_limits<double>::infinity());
@@ -241,13 +293,10 @@ std::optional<StartBundle> bundle_start(const Camera& camera, const FollowedCorn
     result.points_ref[builder.corner_of(i)] = problem.points[i];
     ++count;
   }
-  if (count < options.min_points ||
-      count < options.min_share * static_cast<double>(corners.sigma_px.size())) {
-    return std::nullopt;
-  }
+  if (count < least) return std::nullopt;
   result.variance = residual_variance(problem);
   // Residuals that happen to be small do not make the depths better than the corners are.
-  constexpr double kLeastVariance = 0.1;
+  constexpr double kLeastVariance = 0.03;
   result.depth_error = DepthUncertainty(problem).median_relative(options.checked_points) *
                        std::sqrt(std::max(result.variance, kLeastVariance));
   result.good =

@@ -21,9 +21,15 @@ struct StartBundleOptions {
   int min_frames = 4;
   int min_points = 100;
   double min_share = 0.8;         ///< of the corners, that all frames must agree on
-  double max_depth_error = 0.03;  ///< relative standard deviation, of the median point
-  double max_variance = 1.0;      ///< of the normalised residuals
-  int checked_points = 100;       ///< whose depth's uncertainty is computed
+  double max_depth_error = 0.05;  ///< relative standard deviation, of the median point
+  /// Of the normalised residuals. Followed corners are good to a third of their sigma; under a
+  /// great turn their patches shift with the slope of the surface, which a wrong pose can explain.
+  double max_variance = 0.15;
+  int checked_points = 100;  ///< whose depth's uncertainty is computed
+  int trial_corners = 250;   ///< with which candidates are compared
+  /// Another solution's variance must be so many times that of the best. A thousand residuals and
+  /// more stand behind each, so that even a tenth is beyond chance.
+  double min_variance_ratio = 1.15;
 };
 
 struct StartBundle {
@@ -41,5 +47,11 @@ struct StartBundle {
 std::optional<StartBundle> bundle_start(const Camera& camera, const FollowedCorners& corners,
                                         const Pose& newest_from_ref,
                                         const StartBundleOptions& options = {});
+
+/// The same from the best of several relative poses, told by bundles of some of the corners.
+/// Nothing where another one leads elsewhere and fits nearly as well, or the result is not good.
+std::optional<StartBundle> bundle_best_start(const Camera& camera, const FollowedCorners& corners,
+                                             const std::vector<Pose>& newest_from_ref,
+                                             const StartBundleOptions& options = {});
 
 }  // namespace planecast::slam

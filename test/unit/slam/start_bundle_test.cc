@@ -126,6 +126,21 @@ TEST(StartBundle, AStandingCameraIsNoStart) {
   EXPECT_FALSE(bundle && bundle->good);
 }
 
+TEST(StartBundle, ChoosesTheBestOfSeveralPoses) {
+  const World world = followed_world({0.04, 0.004, 0.004}, {0.01, -0.02, 0.005},
+                                     "StartBundle.ChoosesTheBestOfSeveralPoses");
+  Pose back = world.newest_from_ref;
+  back.translation() = -back.translation();
+  const auto bundle =
+      bundle_best_start(test_camera(), world.corners, {back, world.newest_from_ref, back});
+  ASSERT_TRUE(bundle.has_value());
+  EXPECT_GT(
+      bundle->newest_from_ref.translation().normalized().dot(world.newest_from_ref.translation()),
+      0.99);
+  EXPECT_FALSE(bundle_best_start(test_camera(), world.corners, {back}).has_value());
+  EXPECT_FALSE(bundle_best_start(test_camera(), world.corners, {}).has_value());
+}
+
 TEST(StartBundle, NeedsSeveralFrames) {
   World world =
       followed_world({0.2, 0.0, 0.0}, {0.0, -0.05, 0.0}, "StartBundle.NeedsSeveralFrames");
