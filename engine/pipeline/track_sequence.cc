@@ -13,6 +13,7 @@
 #include "engine/scene/plane_classes.h"
 #include "engine/segmentation/choose_segmenter.h"
 #include "engine/user_error.h"
+#include "slam/stages/check_path.h"
 #include "slam/stages/smooth_path.h"
 #include "slam/system.h"
 
@@ -176,6 +177,7 @@ class TwoPassTracker {
   bool localise_frame(int position, const std::optional<slam::Pose>& prior,
                       const slam::ImageFeatures& image);
   void smooth();
+  void mend(std::size_t begin, std::vector<slam::PathPose>& path);
   void record_first(int position, const slam::FrameTrack& track);
   void record_map_change(int position);
   Reconstruction records();
@@ -342,6 +344,38 @@ void TwoPassTracker::second_pass() {
   smooth();
 }
 
+/// Tries frames of a run whose poses contradict their neighbours' once more, from where those put
+/// them. What still contradicts is left to its neighbours. The run's frames start at `begin`.
+void TwoPassTracker::mend(std::size_t begin, std::vector<slam::PathPose>& path) {
+  std::vector<slam::Pose> poses;
+  std::vector<int> support;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    poses.push_back(path[i].cam_from_world);
+    support.push_back(frames_[begin + i].inliers);
+  }
+  const std::vector<char> trusted = slam::check_path(poses, support);
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    if (trusted[i] != 0) continue;
+    const auto position = static_cast<int>(begin + i);
+    const slam::FrameInput frame = sequence_.read(first_ + position);
+    if (!localise_frame(position, slam::pose_between(poses, trusted, i),
+                        system_.prepare(frame, true))) {
+      continue;
+    }
+    path[i] = *localised_[begin + i];
+    support[i] = frames_[begin + i].inliers;
+  }
+  for (std::size_t i = 0; i < path.size(); ++i) poses[i] = path[i].cam_from_world;
+  const std::vector<char> still_trusted = slam::check_path(poses, support);
+  constexpr double kShareOfDoubtful = 1e-4;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    if (still_trusted[i] != 0) continue;
+    path[i].cam_from_world = slam::pose_between(poses, still_trusted, i);
+    path[i].information *= kShareOfDoubtful;
+    frames_[begin + i].reason = "contradicts its neighbours";
+  }
+}
+
 /// Smooths each run of frames that were localised one after the other.
 void TwoPassTracker::smooth() {
   std::vector<double> gaps;
@@ -360,6 +394,7 @@ void TwoPassTracker::smooth() {
       if (end > begin && frames_[end].timestamp - frames_[end - 1].timestamp > longest_gap) break;
       path.push_back(*localised_[end]);
     }
+    mend(begin, path);
     const std::vector<slam::Pose> smooth = slam::smooth_path(path);
     for (std::size_t i = 0; i < smooth.size(); ++i) {
       frames_[begin + i].world_from_cam = smooth[i].inverse();
