@@ -50,6 +50,8 @@ SystemOptions with_common_values(SystemOptions options) {
   options.track.patches.match.levels = levels;
   options.mapping.describe.patches.levels = levels;
   options.mapping.describe.localise = options.track.localise;
+  options.mapping.describe.keypoints = options.orb.features;
+  options.mapping.describe.min_corners = options.orb.features / 2;
   options.mapping.search.points = options.mapping.points;
   options.mapping.search_by_patches = options.track.front_end == FrontEnd::kPatches;
   return options;

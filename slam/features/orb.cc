@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "slam/data/vector_clones.h"
 #include "slam/features/quad_tree.h"
 
 namespace planecast::slam {
@@ -17,30 +19,42 @@ constexpr int kPatchRadius = 15;
 /// FAST itself needs 3 px, the orientation's patch 15, rounding 1.
 constexpr int kBorder = 19;
 
-/// Half width of each row of the orientation's disc.
-std::array<int, kPatchRadius + 1> disc_half_widths() {
-  std::array<int, kPatchRadius + 1> half_width{};
-  for (int v = 0; v <= kPatchRadius; ++v) {
-    half_width[static_cast<std::size_t>(v)] =
-        static_cast<int>(std::sqrt(double(kPatchRadius * kPatchRadius - v * v)));
+/// Weights of an intensity centroid's moments over a disc, in rows of whole vectors: the last
+/// column is 0.
+struct Disc {
+  static constexpr int kSide = 2 * kPatchRadius + 1;
+  static constexpr int kColumns = kSide + 1;
+  std::array<std::array<std::int16_t, kColumns>, kSide> inside{};  ///< 1 or 0
+  std::array<std::array<std::int16_t, kColumns>, kSide> across{};  ///< the column, 0 outside
+  Disc() {
+    for (int v = -kPatchRadius; v <= kPatchRadius; ++v) {
+      const auto row = static_cast<std::size_t>(v + kPatchRadius);
+      const int reach = static_cast<int>(std::sqrt(double(kPatchRadius * kPatchRadius - v * v)));
+      for (int u = -reach; u <= reach; ++u) {
+        inside[row][static_cast<std::size_t>(u + kPatchRadius)] = 1;
+        across[row][static_cast<std::size_t>(u + kPatchRadius)] = static_cast<std::int16_t>(u);
+      }
+    }
   }
-  return half_width;
-}
+};
 
-/// Angle of the intensity centroid in a disc (Rublee 2011, section 3.2), degrees in [0, 360).
-float orientation_deg(const cv::Mat& image, const cv::Point2f& point,
-                      const std::array<int, kPatchRadius + 1>& half_width) {
-  const int x = cvRound(point.x);
+/// Angle of the intensity centroid in the disc (Rublee 2011, section 3.2), degrees in [0, 360).
+PLANECAST_VECTOR_CLONES
+float orientation_deg(const cv::Mat& image, const cv::Point2f& point, const Disc& disc) {
+  const int x = cvRound(point.x) - kPatchRadius;
   const int y = cvRound(point.y);
   int moment_x = 0;
   int moment_y = 0;
   for (int v = -kPatchRadius; v <= kPatchRadius; ++v) {
-    const uchar* row = image.ptr<uchar>(y + v) + x;
-    const int reach = half_width[static_cast<std::size_t>(std::abs(v))];
+    const uchar* pixels = image.ptr<uchar>(y + v) + x;
+    const auto row = static_cast<std::size_t>(v + kPatchRadius);
+    const std::int16_t* inside = disc.inside[row].data();
+    const std::int16_t* across = disc.across[row].data();
     int row_sum = 0;
-    for (int u = -reach; u <= reach; ++u) {
-      row_sum += row[u];
-      moment_x += u * row[u];
+    for (int u = 0; u < Disc::kColumns; ++u) {
+      const auto grey = static_cast<std::int16_t>(pixels[u]);
+      row_sum += grey * inside[u];
+      moment_x += grey * across[u];
     }
     moment_y += v * row_sum;
   }
@@ -107,7 +121,7 @@ std::vector<cv::KeyPoint> detect_corners(const cv::Mat& image, int high, int low
 struct OrbExtractor::Impl {
   OrbOptions options;
   cv::Ptr<cv::ORB> descriptor;
-  std::array<int, kPatchRadius + 1> half_width = disc_half_widths();
+  Disc disc;
   std::vector<cv::Mat> pyramid;
 
   void build_pyramid(const cv::Mat& grey);
@@ -138,7 +152,7 @@ std::vector<cv::KeyPoint> OrbExtractor::Impl::detect(int level, int limit, int t
   const auto scale = static_cast<float>(options.levels.scale(level));
   for (cv::KeyPoint& corner : corners) {
     corner.pt += cv::Point2f(static_cast<float>(inset), static_cast<float>(inset));
-    corner.angle = orientation_deg(image, corner.pt, half_width);
+    corner.angle = orientation_deg(image, corner.pt, disc);
     corner.pt *= scale;
     corner.octave = level;
     corner.size = 31.0F * scale;
@@ -221,7 +235,7 @@ std::vector<int> OrbExtractor::append(const std::vector<Keypoint>& points, Featu
     }
     indices[i] = features.size();
     features.keypoints.push_back(points[i]);
-    features.keypoints.back().angle_deg = orientation_deg(image, at_level, impl_->half_width);
+    features.keypoints.back().angle_deg = orientation_deg(image, at_level, impl_->disc);
   }
   return indices;
 }

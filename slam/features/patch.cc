@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 
+#include "slam/data/vector_clones.h"
 #include "slam/features/sample_square.h"
 
 namespace planecast::slam {
@@ -23,6 +25,7 @@ bool inside(const cv::Mat& image, const Eigen::Vector2f& pixel) {
 }
 
 /// Samples the patch with a rim of one sample; false beyond the image.
+PLANECAST_VECTOR_CLONES
 bool sample_with_rim(const cv::Mat& image, const Eigen::Vector2f& centre,
                      const Eigen::Matrix2f& ref_from_patch, std::array<float, kRim * kRim>& rim) {
   const float first = kFirst - 1.0F;
@@ -32,34 +35,44 @@ bool sample_with_rim(const cv::Mat& image, const Eigen::Vector2f& centre,
       if (!inside(image, centre + ref_from_patch * Eigen::Vector2f(u, v))) return false;
     }
   }
-  // In three sweeps, of which the first and the last are vectors: places, pixels, values.
+  // In sweeps, all of which but the second are vectors: places, pixels, values. The four pixels
+  // about a place travel as one word.
   constexpr std::size_t kSamples = kRim * kRim;
   std::array<float, kSamples> x;
   std::array<float, kSamples> y;
+  std::array<std::int32_t, kSamples> offset;
+  const Eigen::Vector2f begin = centre + ref_from_patch * Eigen::Vector2f(first, first);
   for (std::size_t v = 0; v < kRim; ++v) {
-    const Eigen::Vector2f begin = centre + first * ref_from_patch.col(0) +
-                                  (first + static_cast<float>(v)) * ref_from_patch.col(1);
+    const float x_row = begin.x() + static_cast<float>(v) * ref_from_patch(0, 1);
+    const float y_row = begin.y() + static_cast<float>(v) * ref_from_patch(1, 1);
     for (std::size_t u = 0; u < kRim; ++u) {
-      x[v * kRim + u] = begin.x() + static_cast<float>(u) * ref_from_patch(0, 0);
-      y[v * kRim + u] = begin.y() + static_cast<float>(u) * ref_from_patch(1, 0);
+      x[v * kRim + u] = x_row + static_cast<float>(u) * ref_from_patch(0, 0);
+      y[v * kRim + u] = y_row + static_cast<float>(u) * ref_from_patch(1, 0);
     }
   }
-  std::array<std::array<float, kSamples>, 4> pixel;
+  const auto step = static_cast<std::int32_t>(image.step[0]);
   for (std::size_t i = 0; i < kSamples; ++i) {
-    const int x0 = static_cast<int>(x[i]);
-    const int y0 = static_cast<int>(y[i]);
-    const uchar* upper = image.ptr<uchar>(y0) + x0;
-    const uchar* lower = upper + image.step[0];
+    const auto x0 = static_cast<std::int32_t>(x[i]);
+    const auto y0 = static_cast<std::int32_t>(y[i]);
+    offset[i] = y0 * step + x0;
     x[i] -= static_cast<float>(x0);
     y[i] -= static_cast<float>(y0);
-    pixel[0][i] = static_cast<float>(upper[0]);
-    pixel[1][i] = static_cast<float>(upper[1]);
-    pixel[2][i] = static_cast<float>(lower[0]);
-    pixel[3][i] = static_cast<float>(lower[1]);
   }
+  std::array<std::uint32_t, kSamples> four;
+  const uchar* pixels = image.data;
   for (std::size_t i = 0; i < kSamples; ++i) {
-    const float top = pixel[0][i] + x[i] * (pixel[1][i] - pixel[0][i]);
-    const float bottom = pixel[2][i] + x[i] * (pixel[3][i] - pixel[2][i]);
+    std::uint16_t upper = 0;
+    std::uint16_t lower = 0;
+    std::memcpy(&upper, pixels + offset[i], sizeof(upper));
+    std::memcpy(&lower, pixels + offset[i] + step, sizeof(lower));
+    four[i] = upper | static_cast<std::uint32_t>(lower) << 16;
+  }
+  const auto grey = [&](std::size_t i, int shift) {
+    return static_cast<float>(static_cast<std::int32_t>(four[i] >> shift & 255U));
+  };
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const float top = grey(i, 0) + x[i] * (grey(i, 8) - grey(i, 0));
+    const float bottom = grey(i, 16) + x[i] * (grey(i, 24) - grey(i, 16));
     rim[i] = top + y[i] * (bottom - top);
   }
   return true;

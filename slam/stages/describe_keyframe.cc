@@ -47,7 +47,10 @@ PoseEstimate describe_keyframe(const Map& map, const Camera& camera, const PoseE
     const double distance = (estimate.cam_from_world * landmark.position).norm();
     points.push_back({patch.raw, patch.pixel, predict_octave(landmark, distance, levels)});
   }
-  Features features = preparer.detect(image);
+  // What the landmarks take need not be detected anew.
+  const int limit =
+      std::max(options.min_corners, options.keypoints - static_cast<int>(points.size()));
+  Features features = preparer.detect(image, limit);
   std::vector<char> taken(features.keypoints.size(), 0);
   const std::vector<int> placed =
       place_points(points, camera, options.snap_px, levels, preparer.extractor(), taken, features);

@@ -11,6 +11,8 @@
 namespace planecast::slam {
 
 struct DescribeKeyframeOptions {
+  int keypoints = 1000;   ///< corners and landmarks together, as of an image with ORB alone [K]
+  int min_corners = 500;  ///< however many landmarks there are: new ones start from corners
   double snap_px =
       2.0;  ///< a corner so near to a landmark's patch, at its level, is that landmark's
   LocaliseOptions localise;

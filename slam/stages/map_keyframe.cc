@@ -56,6 +56,7 @@ KeyframeMapper::KeyframeMapper(const KeyframeMapperOptions& options, const Camer
 
 void KeyframeMapper::reset() {
   plane_mapper_ = PlaneMapper(options_.planes, camera_, options_.rgbd);
+  search_log_ = {};
 }
 
 void KeyframeMapper::segment(const ImageFeatures& image, Keyframe& keyframe, StageTimes& times) {
@@ -120,7 +121,8 @@ void KeyframeMapper::create_points(Map& map, KeyframeId id, const ImageFeatures&
   Stopwatch watch;
   double search_ms = 0.0;
   if (options_.search_by_patches) {
-    const std::vector<Sighting> sightings = search_points(map, id, camera_, options_.search);
+    const std::vector<Sighting> sightings =
+        search_points(map, id, camera_, options_.search, search_log_);
     search_ms = watch.lap_ms();
     put_sightings(map, id, camera_, image.grey_or_bgr, options_.prepare.max_keypoint_depth_m,
                   sightings, options_.search, preparer_.extractor(), stats);

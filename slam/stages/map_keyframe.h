@@ -80,6 +80,7 @@ class KeyframeMapper {
   std::unique_ptr<PlaneSegmenter> segmenter_;
   ImagePreparer preparer_;
   PlaneMapper plane_mapper_;
+  SearchLog search_log_;
 };
 
 }  // namespace planecast::slam

@@ -71,6 +71,60 @@ std::vector<LandmarkId> landmarks_in(const Keyframe& keyframe) {
   return ids;
 }
 
+/// The keyframes in which a new one's landmarks are looked for, ascending: its neighbours and
+/// theirs.
+std::vector<KeyframeId> fuse_targets(const Map& map, KeyframeId id, bool rgbd,
+                                     const PointMappingOptions& options) {
+  const auto most =
+      static_cast<std::size_t>(rgbd ? options.neighbours_rgbd : options.neighbours_mono);
+  std::vector<KeyframeId> targets = best_neighbours(map, id, most);
+  // Neighbours of the best few are enough: their own neighbours overlap.
+  constexpr std::size_t kAsked = 5;
+  const std::vector<KeyframeId> best(
+      targets.begin(),
+      targets.begin() + static_cast<std::ptrdiff_t>(std::min(kAsked, targets.size())));
+  for (const KeyframeId neighbour : best) {
+    for (const KeyframeId second : best_neighbours(map, neighbour, 5)) {
+      if (second != id) targets.push_back(second);
+    }
+  }
+  std::sort(targets.begin(), targets.end());
+  targets.erase(std::unique(targets.begin(), targets.end()), targets.end());
+  return targets;
+}
+
+/// What of a new keyframe's landmarks is worth looking for elsewhere. The keyframe before it was
+/// asked the same, so that what both see has been looked for in the neighbours of both.
+class NotTriedBefore {
+ public:
+  NotTriedBefore(const Map& map, KeyframeId id) : all_(landmarks_in(map.keyframes.at(id))) {
+    KeyframeId before = id - 1;
+    while (before >= 0 && !map.keyframes.contains(before)) --before;
+    if (before < 0) return;
+    std::vector<char> seen(static_cast<std::size_t>(map.landmarks.next_id()), 0);
+    for (const LandmarkId landmark : map.keyframes.at(before).landmarks) {
+      if (landmark != kNone) seen[static_cast<std::size_t>(landmark)] = 1;
+    }
+    for (const LandmarkId landmark : all_) {
+      if (seen[static_cast<std::size_t>(landmark)] == 0) new_.push_back(landmark);
+    }
+    neighbours_of_before_.assign(static_cast<std::size_t>(map.keyframes.next_id()), 0);
+    for (const auto& [neighbour, shared] : map.covisible(before)) {
+      neighbours_of_before_[static_cast<std::size_t>(neighbour)] = 1;
+    }
+  }
+  const std::vector<LandmarkId>& in(KeyframeId target) const {
+    const bool tried = !neighbours_of_before_.empty() &&
+                       neighbours_of_before_[static_cast<std::size_t>(target)] != 0;
+    return tried ? new_ : all_;
+  }
+
+ private:
+  std::vector<LandmarkId> all_;
+  std::vector<LandmarkId> new_;  ///< not seen by the keyframe before
+  std::vector<char> neighbours_of_before_;
+};
+
 }  // namespace
 
 std::vector<KeyframeId> best_neighbours(const Map& map, KeyframeId keyframe, std::size_t most) {
@@ -191,14 +245,15 @@ void fuse_landmarks_into(Map& map, const std::vector<LandmarkId>& candidates, Ke
                          PointMappingStats& stats) {
   std::vector<Expectation> expectations;
   const Keyframe& keyframe = map.keyframes.at(id);
+  std::vector<char> seen(static_cast<std::size_t>(map.landmarks.next_id()), 0);
+  for (const LandmarkId landmark : keyframe.landmarks) {
+    if (landmark != kNone) seen[static_cast<std::size_t>(landmark)] = 1;
+  }
   for (const LandmarkId candidate : candidates) {
     const Landmark* landmark = map.landmarks.find(candidate);
-    if (landmark == nullptr) continue;
-    const bool seen = std::any_of(landmark->observations.begin(), landmark->observations.end(),
-                                  [id](const Observation& o) { return o.keyframe == id; });
+    if (landmark == nullptr || seen[static_cast<std::size_t>(candidate)] != 0) continue;
     Expectation expectation;
-    if (seen ||
-        !expect_landmark(*landmark, camera, keyframe.cam_from_world, options.levels, expectation)) {
+    if (!expect_landmark(*landmark, camera, keyframe.cam_from_world, options.levels, expectation)) {
       continue;
     }
     expectation.radius_px = 3.0 * options.levels.scale(expectation.max_octave);
@@ -234,33 +289,22 @@ void fuse_landmarks_into(Map& map, const std::vector<LandmarkId>& candidates, Ke
 
 void fuse_landmarks(Map& map, KeyframeId id, const Camera& camera, bool rgbd,
                     const PointMappingOptions& options, PointMappingStats& stats) {
-  const auto most =
-      static_cast<std::size_t>(rgbd ? options.neighbours_rgbd : options.neighbours_mono);
-  std::vector<KeyframeId> targets = best_neighbours(map, id, most);
-  // Neighbours of the best few are enough: their own neighbours overlap.
-  constexpr std::size_t kAsked = 5;
-  const std::vector<KeyframeId> best(
-      targets.begin(),
-      targets.begin() + static_cast<std::ptrdiff_t>(std::min(kAsked, targets.size())));
-  for (const KeyframeId neighbour : best) {
-    for (const KeyframeId second : best_neighbours(map, neighbour, 5)) {
-      if (second != id) targets.push_back(second);
+  const std::vector<KeyframeId> targets = fuse_targets(map, id, rgbd, options);
+  const NotTriedBefore not_tried(map, id);
+  for (const KeyframeId target : targets) {
+    fuse_landmarks_into(map, not_tried.in(target), target, camera, options, stats);
+  }
+  std::vector<char> around(static_cast<std::size_t>(map.landmarks.next_id()), 0);
+  for (const KeyframeId target : targets) {
+    for (const LandmarkId landmark : map.keyframes.at(target).landmarks) {
+      if (landmark != kNone) around[static_cast<std::size_t>(landmark)] = 1;
     }
   }
-  std::sort(targets.begin(), targets.end());
-  targets.erase(std::unique(targets.begin(), targets.end()), targets.end());
-
-  for (const KeyframeId target : targets) {
-    fuse_landmarks_into(map, landmarks_in(map.keyframes.at(id)), target, camera, options, stats);
+  std::vector<LandmarkId> candidates;
+  for (std::size_t i = 0; i < around.size(); ++i) {
+    if (around[i] != 0) candidates.push_back(static_cast<LandmarkId>(i));
   }
-  std::vector<LandmarkId> around;
-  for (const KeyframeId target : targets) {
-    const std::vector<LandmarkId> seen = landmarks_in(map.keyframes.at(target));
-    around.insert(around.end(), seen.begin(), seen.end());
-  }
-  std::sort(around.begin(), around.end());
-  around.erase(std::unique(around.begin(), around.end()), around.end());
-  fuse_landmarks_into(map, around, id, camera, options, stats);
+  fuse_landmarks_into(map, candidates, id, camera, options, stats);
   for (const LandmarkId landmark : landmarks_in(map.keyframes.at(id))) {
     map.update_landmark_summary(landmark, options.levels);
   }

@@ -48,17 +48,22 @@ std::optional<InverseDepths> depth_range(const Map& map, const Keyframe& keyfram
                        1.0 / (options.nearest_depth * depths[tail])};
 }
 
-/// Keypoints without a landmark, strongest first.
-std::vector<int> free_keypoints(const Keyframe& keyframe, int most) {
+/// Keypoints without a landmark that are worth another look, strongest first.
+std::vector<int> free_keypoints(const Keyframe& keyframe, const std::vector<std::uint8_t>& searched,
+                                const SearchPointsOptions& options) {
   std::vector<int> keypoints;
   for (int k = 0; k < keyframe.features->size(); ++k) {
-    if (keyframe.landmarks[static_cast<std::size_t>(k)] == kNone) keypoints.push_back(k);
+    const auto at = static_cast<std::size_t>(k);
+    if (keyframe.landmarks[at] == kNone && searched[at] < options.max_searches) {
+      keypoints.push_back(k);
+    }
   }
   std::stable_sort(keypoints.begin(), keypoints.end(), [&](int a, int b) {
     return keyframe.features->keypoints[static_cast<std::size_t>(a)].response >
            keyframe.features->keypoints[static_cast<std::size_t>(b)].response;
   });
-  if (static_cast<int>(keypoints.size()) > most) keypoints.resize(static_cast<std::size_t>(most));
+  const auto most = static_cast<std::size_t>(options.max_points);
+  if (keypoints.size() > most) keypoints.resize(most);
   return keypoints;
 }
 
@@ -215,19 +220,54 @@ class EpipolarSearch {
   std::vector<float> scores_;
 };
 
-/// Adds a sighting; one at the place of an earlier one, of another neighbour, is the same point.
-void add_sighting(Sighting sighting, std::vector<Sighting>& sightings) {
-  constexpr float kSamePx = 1.0F;
-  const KeyframeId neighbour = sighting.seen.front().keyframe;
-  for (Sighting& earlier : sightings) {
-    if ((earlier.point.raw - sighting.point.raw).squaredNorm() > kSamePx * kSamePx) continue;
-    const bool other = std::none_of(earlier.seen.begin(), earlier.seen.end(),
-                                    [&](const auto& seen) { return seen.keyframe == neighbour; });
-    if (other) earlier.seen.push_back(sighting.seen.front());
-    return;
+/// Sightings by their place; one at the place of an earlier one, of another neighbour, is the same
+/// point.
+class Sightings {
+ public:
+  explicit Sightings(const Camera& camera)
+      : columns_(camera.width / kCellPx + 1),
+        rows_(camera.height / kCellPx + 1),
+        cells_(static_cast<std::size_t>(columns_ * rows_)) {}
+
+  void add(Sighting sighting) {
+    constexpr float kSamePx = 1.0F;
+    const KeyframeId neighbour = sighting.seen.front().keyframe;
+    const int column = cell(sighting.point.raw.x(), columns_);
+    const int row = cell(sighting.point.raw.y(), rows_);
+    int same = kNone;
+    for (int r = std::max(0, row - 1); r <= std::min(rows_ - 1, row + 1); ++r) {
+      for (int c = std::max(0, column - 1); c <= std::min(columns_ - 1, column + 1); ++c) {
+        for (const int earlier : cells_[static_cast<std::size_t>(r * columns_ + c)]) {
+          const Eigen::Vector2f& raw = found_[static_cast<std::size_t>(earlier)].point.raw;
+          const bool here = (raw - sighting.point.raw).squaredNorm() <= kSamePx * kSamePx;
+          if (here && (same == kNone || earlier < same)) same = earlier;
+        }
+      }
+    }
+    if (same != kNone) {
+      std::vector<Observation>& seen = found_[static_cast<std::size_t>(same)].seen;
+      const bool other = std::none_of(seen.begin(), seen.end(), [&](const Observation& one) {
+        return one.keyframe == neighbour;
+      });
+      if (other) seen.push_back(sighting.seen.front());
+      return;
+    }
+    cells_[static_cast<std::size_t>(row * columns_ + column)].push_back(
+        static_cast<int>(found_.size()));
+    found_.push_back(std::move(sighting));
   }
-  sightings.push_back(std::move(sighting));
-}
+  std::vector<Sighting> take() { return std::move(found_); }
+
+ private:
+  static constexpr int kCellPx = 16;
+  static int cell(float pixel, int cells) {
+    return std::clamp(static_cast<int>(pixel) / kCellPx, 0, cells - 1);
+  }
+  int columns_;
+  int rows_;
+  std::vector<std::vector<int>> cells_;
+  std::vector<Sighting> found_;
+};
 
 /// Keypoints for the sightings; those that hold a landmark already are not used again.
 std::vector<int> add_keypoints(const std::vector<Sighting>& sightings, const Camera& camera,
@@ -260,9 +300,16 @@ std::vector<int> add_keypoints(const std::vector<Sighting>& sightings, const Cam
 
 }  // namespace
 
+std::vector<std::uint8_t>& SearchLog::of(KeyframeId keyframe, std::size_t keypoints) {
+  const auto at = static_cast<std::size_t>(keyframe);
+  if (counts_.size() <= at) counts_.resize(at + 1);
+  if (counts_[at].size() < keypoints) counts_[at].resize(keypoints, 0);
+  return counts_[at];
+}
+
 std::vector<Sighting> search_points(const Map& map, KeyframeId id, const Camera& camera,
-                                    const SearchPointsOptions& options) {
-  std::vector<Sighting> sightings;
+                                    const SearchPointsOptions& options, SearchLog& log) {
+  Sightings sightings(camera);
   const Keyframe& keyframe = map.keyframes.at(id);
   int searched = 0;
   for (const KeyframeId neighbour_id : best_neighbours(map, id, 20)) {
@@ -274,12 +321,14 @@ std::vector<Sighting> search_points(const Map& map, KeyframeId id, const Camera&
     const auto range = depth_range(map, neighbour, options);
     if (!range) continue;
     EpipolarSearch search(camera, neighbour, keyframe, *range, options);
-    for (const int k : free_keypoints(neighbour, options.max_points)) {
-      if (auto sighting = search.find(k)) add_sighting(std::move(*sighting), sightings);
+    std::vector<std::uint8_t>& counts = log.of(neighbour_id, neighbour.landmarks.size());
+    for (const int k : free_keypoints(neighbour, counts, options)) {
+      ++counts[static_cast<std::size_t>(k)];
+      if (auto sighting = search.find(k)) sightings.add(std::move(*sighting));
     }
     if (++searched == options.neighbours) break;
   }
-  return sightings;
+  return sightings.take();
 }
 
 void put_sightings(Map& map, KeyframeId id, const Camera& camera, const cv::Mat& image,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <opencv2/core.hpp>
 #include <vector>
 
@@ -15,6 +16,7 @@ namespace planecast::slam {
 struct SearchPointsOptions {
   int neighbours = 4;           ///< keyframes whose keypoints are looked for
   int max_points = 400;         ///< keypoints of a keyframe that are looked for, strongest first
+  int max_searches = 3;         ///< in which a keypoint may be looked for in vain
   double nearest_depth = 0.5;   ///< of the 5th percentile of the keyframe's depths
   double farthest_depth = 2.0;  ///< of the 95th
   int max_steps = 50;           ///< along an epipolar line, at the level where it is searched
@@ -23,6 +25,16 @@ struct SearchPointsOptions {
   double max_runner_up = 0.9;  ///< correlation elsewhere on the line, as a share of the best
   double snap_px = 2.0;        ///< as in DescribeKeyframeOptions
   PointMappingOptions points;
+};
+
+/// How often each keypoint without a landmark was looked for in newer keyframes.
+class SearchLog {
+ public:
+  /// Counts of a keyframe's keypoints, at least `keypoints` of them.
+  std::vector<std::uint8_t>& of(KeyframeId keyframe, std::size_t keypoints);
+
+ private:
+  std::vector<std::vector<std::uint8_t>> counts_;
 };
 
 /// A keypoint of a neighbour that was found in the new keyframe.
@@ -38,7 +50,7 @@ struct Sighting {
 /// detector to fire twice at one place, so that it works where noise or blur make it fail.
 /// Precondition: the keyframe's image pyramid is there.
 std::vector<Sighting> search_points(const Map& map, KeyframeId keyframe, const Camera& camera,
-                                    const SearchPointsOptions& options);
+                                    const SearchPointsOptions& options, SearchLog& log);
 
 /// Makes landmarks of them. The keyframe gets keypoints for what was found, with depth from its
 /// depth image where it has one, and a descriptor for each keypoint that had none. Precondition:

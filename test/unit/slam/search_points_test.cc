@@ -83,7 +83,8 @@ void expect_landmarks_on_the_plane(const Camera& camera) {
   Map map = two_keyframes(camera, first, second, moved);
   const std::size_t before = map.landmarks.size();
   PointMappingStats stats;
-  const std::vector<Sighting> sightings = search_points(map, 1, camera, {});
+  SearchLog log;
+  const std::vector<Sighting> sightings = search_points(map, 1, camera, {}, log);
   put_sightings(map, 1, camera, second.grey_or_bgr, 0.0, sightings, {}, preparer.extractor(),
                 stats);
 
