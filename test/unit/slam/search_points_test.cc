@@ -118,6 +118,23 @@ TEST(SearchPoints, WorksThroughADistortedLens) {
   expect_landmarks_on_the_plane(camera);
 }
 
+TEST(SearchPoints, LeavesWhatWasLookedForInVainAlone) {
+  const Camera camera = test_camera();
+  PrepareOptions prepare;
+  ImagePreparer preparer(prepare, camera);
+  const Pose moved = pose_at({0.2, 0.02, 0.03}, {0.01, -0.06, 0.02});
+  const ImageFeatures first = view(preparer, camera, Pose::Identity(), 0);
+  const ImageFeatures second = view(preparer, camera, moved, 1);
+  const Map map = two_keyframes(camera, first, second, moved);
+  SearchPointsOptions options;
+  options.max_points = 10000;
+  SearchLog log;
+  for (int search = 0; search < options.max_searches; ++search) {
+    EXPECT_GT(search_points(map, 1, camera, options, log).size(), 150U);
+  }
+  EXPECT_TRUE(search_points(map, 1, camera, options, log).empty());
+}
+
 TEST(CornerTracks, FollowWithoutDrift) {
   const Camera camera = test_camera();
   PrepareOptions prepare;
