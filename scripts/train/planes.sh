@@ -8,7 +8,7 @@ work=${1:-out/network}
 python=/usr/bin/python3
 build=build/release
 tools=$build/scripts/train
-shards=16
+shards=22
 rooms_per_shard=334
 views=3
 
@@ -31,15 +31,15 @@ train() {
     --validation "$work/validation.bin" --batch 8 "$@"
 }
 # Pictures 128 wide first; then the whole size, at last with the rate falling to nothing.
-train --output "$work/1.pt" --width 128 --steps 3500 --decay 0 --seed 1
-train --output "$work/2.pt" --start "$work/1.pt" --steps 1000 --decay 0 --seed 3
-train --output "$work/3.pt" --start "$work/2.pt" --steps 6500 --decay 1 --seed 5
+train --output "$work/1.pt" --shards "$work/train_0*.bin" --width 128 --steps 4000 --decay 0 --seed 1
+train --output "$work/2.pt" --start "$work/1.pt" --steps 14000 --decay 0 --seed 3
+train --output "$work/3.pt" --start "$work/2.pt" --steps 9000 --decay 1 --seed 5
 $python scripts/train/export_planes.py "$work/3.pt" assets/network/planes.onnx
 
 {
   echo "Plane network, made by scripts/train/planes.sh"
   echo "training: $((shards * rooms_per_shard)) rooms (seeds from 0), $views views each, 192x144"
-  echo "steps of 8 pictures: 3500 at 128x96, then 1000 and 6500 (falling rate) at 192x144"
+  echo "steps of 8 pictures: 4000 at 128x96, then 14000 and 9000 (falling rate) at 192x144"
   for rooms in 20 500; do
     $tools/evaluate_planes assets/network/planes.onnx held-out $rooms | tail -1
   done
