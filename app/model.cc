@@ -7,6 +7,7 @@
 #include "app/commands.h"
 #include "app/manual.h"
 #include "app/options.h"
+#include "engine/look/environment_file.h"
 #include "engine/output/png.h"
 #include "engine/pipeline/turntable.h"
 #include "engine/user_error.h"
@@ -21,6 +22,7 @@ struct ModelCommand {
   std::string file;
   std::string output;
   std::string animation;
+  std::string environment;
   render::ImportOptions import;
   bool list = false;
   bool keep_triangles = false;
@@ -48,6 +50,7 @@ struct ModelCommand {
     engine::TurntableOptions options = turntable;
     options.animation = find_animation(*model);
     options.simplify = !keep_triangles;
+    if (!environment.empty()) options.environment = engine::load_environment(environment);
     if (options.camera >= 0 && !engine::has_camera(*model, options.camera)) {
       throw engine::UserError(file + ": no camera " + std::to_string(options.camera));
     }
@@ -95,8 +98,12 @@ struct ModelCommand {
     if (animation.empty()) return -1;
     const std::vector<std::string> names = render::animation_names(model);
     const auto found = std::ranges::find(names, animation);
-    if (found == names.end()) throw engine::UserError(file + ": no animation '" + animation + "'");
-    return static_cast<int>(found - names.begin());
+    if (found != names.end()) return static_cast<int>(found - names.begin());
+    // Many files leave their animations without names.
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (animation == std::to_string(i)) return static_cast<int>(i);
+    }
+    throw engine::UserError(file + ": no animation '" + animation + "'");
   }
 };
 
@@ -116,8 +123,10 @@ void add_model(CLI::App& app, Action& action) {
       ->type_name("N")
       ->check(CLI::Range(32, 2048))
       ->capture_default_str();
-  command->add_option("--animation", options->animation, "Name of an animation to pose it by")
-      ->type_name("NAME");
+  command
+      ->add_option("--animation", options->animation,
+                   "Name or number of an animation to pose it by")
+      ->type_name("NAME|N");
   command->add_option("--time", options->turntable.time_s, "Seconds into the animation")
       ->type_name("N")
       ->capture_default_str();
@@ -138,6 +147,10 @@ void add_model(CLI::App& app, Action& action) {
   command->add_option("--azimuth", options->turntable.azimuth_deg, "Degrees of the first view")
       ->type_name("N")
       ->capture_default_str();
+  command
+      ->add_option("--environment", options->environment,
+                   "Equirectangular .hdr picture of surroundings that light the model")
+      ->type_name("FILE");
   command->add_flag("--keep-triangles", options->keep_triangles, "Never simplify meshes");
   add_common_options(*command, options->common);
   set_examples(*command,

@@ -17,6 +17,12 @@ void add_rendering_options(CLI::App& command, RenderingOptions& options) {
   command.add_flag("--png", options.png, "Write each frame as PNG too");
   command.add_flag("--no-video", options.no_video, "Write no video");
   command.add_flag("--debug-overlay", options.debug_overlay, "Draw plane outlines over the frames");
+  command
+      .add_option("--painter", options.painter,
+                  "auto draws simple objects without OpenGL, which is faster; gl never does")
+      ->type_name("auto|gl")
+      ->check(CLI::IsMember({"auto", "gl"}))
+      ->capture_default_str();
   command.add_flag("--resume", options.resume, "Go on where a killed run stopped");
 }
 
@@ -38,6 +44,7 @@ engine::RenderSequenceOptions resolve(const RenderingOptions& rendering,
   options.debug_overlay = rendering.debug_overlay;
   options.resume = rendering.resume;
   options.skip_unreadable = input.skip_unreadable;
+  options.only_opengl = rendering.painter == "gl";
   options.threads = common.threads;
   options.seed = common.seed;
   return options;
@@ -73,10 +80,14 @@ RenderingReport report_rendering(const engine::RenderSequenceResult& result,
   }
   console.info("content is in view in " + std::to_string(result.with_content) + " of " +
                std::to_string(result.frames) + " frames");
+  console.detail("drawn by the processor: " + std::to_string(result.by_processor) +
+                 ", by OpenGL: " + std::to_string(result.with_content - result.by_processor));
   RenderingReport report;
   report.place = result.video.empty() ? folder.string() : result.video.string();
   report.figures["frames"] = result.frames;
   report.figures["with_content"] = result.with_content;
+  report.figures["drawn_by"] = {{"processor", result.by_processor},
+                                {"opengl", result.with_content - result.by_processor}};
   report.figures["unreadable"] = result.unreadable;
   report.figures["mean_ms"] = result.mean_ms;
   report.figures["warnings"] = result.warnings;

@@ -18,6 +18,7 @@ struct RenderingOptions {
   bool no_video = false;
   bool debug_overlay = false;
   bool resume = false;
+  std::string painter = "auto";  ///< or "gl"
 };
 void add_rendering_options(CLI::App& command, RenderingOptions& options);
 

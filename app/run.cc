@@ -63,6 +63,10 @@ void RunCommand::write_report(const engine::Reconstruction& reconstruction,
   report.facts.emplace_back("Scene", rendering.scene.empty() ? "built-in" : rendering.scene);
   report.facts.emplace_back("Content in view", std::to_string(result.with_content) + " of " +
                                                    std::to_string(result.frames) + " frames");
+  report.facts.emplace_back("Drawn by the processor / by OpenGL",
+                            std::to_string(result.by_processor) + " / " +
+                                std::to_string(result.with_content - result.by_processor) +
+                                " frames");
   report.warnings = result.warnings;
   const std::filesystem::path folder(output);
   for (const char* file : {"augmented.mp4", "scene.glb", "planes.json"}) {

@@ -11,6 +11,7 @@
 #include "render/gl/program.h"
 #include "render/passes/catchers.h"
 #include "render/passes/content_hash.h"
+#include "render/passes/environment_map.h"
 #include "render/passes/model_passes.h"
 #include "render/passes/models.h"
 #include "render/passes/occluders.h"
@@ -18,6 +19,7 @@
 #include "render/passes/surfaces.h"
 #include "render/passes/targets.h"
 #include "render/passes/view.h"
+#include "render/software/software_layer.h"
 
 namespace planecast::render {
 namespace {
@@ -90,8 +92,10 @@ struct Renderer::Impl {
         models(gl),
         model_passes(gl, shaders, models),
         catchers(gl, model_passes),
-        occluders(gl) {
+        occluders(gl),
+        environment(gl) {
     gl.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    gl.Enable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
   }
 
   /// Targets for the window; kept while they fit. What they hold does not depend on their size.
@@ -106,12 +110,16 @@ struct Renderer::Impl {
   }
 
   Layer draw_layer(const LayerScene& scene, const Camera& camera);
+  void draw_by_opengl(const LayerScene& scene, const Camera& camera, const CatcherInput& catching,
+                      const Window& window, Layer& layer);
+  void draw_by_processor(const CatcherInput& catching, const Window& window, Layer& layer);
   void draw_layer_color(const LayerScene& scene, const Camera& camera, const CatcherInput& catching,
                         const ShadingInput& shading, const Window& window, Layer& layer);
   OpaqueImages draw_opaque(const OpaqueScene& scene, const Camera& camera);
   void draw_shadow_map(const ShadowProjection& projection, const std::vector<DrawItem>& items,
                        const Sun& sun, bool with_surfaces, std::uint64_t signature);
   GLuint upload_occluder_depth(const LayerScene& scene, const Window& window);
+  void light_by(const Light& light, ShadingInput& shading);
   void begin_opaque_state() const;
   void check_errors() const;
 
@@ -121,17 +129,27 @@ struct Renderer::Impl {
   ShaderLibrary shaders;
   ShadowMap shadow_map;
   std::uint64_t shadow_signature = 0;
+  std::vector<float> shadow_in_memory;  ///< of the map as it is, or empty
   SurfaceSet surfaces;
   ModelSet models;
   ModelPasses model_passes;
   CatcherPass catchers;
   OccluderPass occluders;
+  EnvironmentMap environment;
+  SoftwareLayer software;
   std::optional<ColorTarget> color;
   std::optional<GeometryTarget> geometry;
   TextureHandle occluder_depth;
   Layer::Rect occluder_depth_rect;
   PassClock clock{gl, options.time_passes};
 };
+
+void Renderer::Impl::light_by(const Light& light, ShadingInput& shading) {
+  shading.light = &light;
+  if (light.environment == nullptr) return;
+  shading.environment = environment.texture(light.environment);
+  shading.environment_levels = light.environment->levels();
+}
 
 void Renderer::Impl::begin_opaque_state() const {
   gl.Enable(GL_DEPTH_TEST);
@@ -151,6 +169,7 @@ void Renderer::Impl::draw_shadow_map(const ShadowProjection& projection,
                                      bool with_surfaces, std::uint64_t signature) {
   if (signature == shadow_signature) return;
   shadow_signature = signature;
+  shadow_in_memory.clear();
   shadow_map.begin(projection);
   // Casters step back by their slope, so that they do not shade themselves between texels.
   constexpr float kSlopeTexels = 1.5F;
@@ -234,11 +253,58 @@ Layer Renderer::Impl::draw_layer(const LayerScene& scene, const Camera& camera) 
   if (layer.bounds.width == 0) return layer;
 
   const Window window{camera.width, camera.height, layer.bounds};
+  const bool by_processor =
+      !options.only_opengl && options.msaa_samples > 1 &&
+      SoftwareLayer::can_draw(scene, camera, items, !models.lamps().empty(), catching.still);
+  if (by_processor) {
+    draw_by_processor(catching, window, layer);
+    layer.by_processor = true;
+  } else {
+    draw_by_opengl(scene, camera, catching, window, layer);
+  }
+  check_errors();
+  return layer;
+}
+
+void Renderer::Impl::draw_by_processor(const CatcherInput& catching, const Window& window,
+                                       Layer& layer) {
+  const LayerScene& scene = *catching.scene;
+  const Sun& sun = scene.light.sun;
+  SoftwareInput input;
+  input.scene = &scene;
+  input.camera = catching.camera;
+  input.items = catching.items;
+  input.shadows = &catchers.shadows_in_memory();
+  input.detail_px = options.simplify_px;
+  input.light.eye = camera_position(*catching.camera);
+  input.light.ambient_sh = scene.light.ambient_sh;
+  input.light.to_light = glm::normalize(sun.direction_to_light);
+  input.light.sun = sun.radiance;
+  input.light.exposure = scene.exposure;
+  if (catching.shadow != nullptr) {
+    if (shadow_in_memory.empty()) shadow_in_memory = shadow_map.read();
+    const ShadowProjection& projection = shadow_map.projection();
+    const float radius_m = sun.softness * projection.texel_m;
+    input.light.shadow_from_world = projection.clip_from_world;
+    input.light.shadow_reach_m = 1.5F * projection.texel_m + radius_m;
+    input.light.shadow_bias = 0.5F * projection.texel_m / projection.depth_m;
+    input.shadow = {shadow_in_memory.data(), shadow_map.size(),
+                    glm::vec2(0.9F, 0.35F) * (radius_m / projection.extent_m)};
+  }
+  software.draw(input, window, layer);
+  clock.end_of("objects by the processor");
+}
+
+void Renderer::Impl::draw_by_opengl(const LayerScene& scene, const Camera& camera,
+                                    const CatcherInput& catching, const Window& window,
+                                    Layer& layer) {
   prepare_targets(window);
   ShadingInput shading;
   shading.camera = &camera;
-  shading.light = &scene.light;
-  shading.shadow = shadow;
+  light_by(scene.light, shading);
+  shading.exposure = scene.exposure;
+  shading.tone_map = scene.tone_map;
+  shading.shadow = catching.shadow;
   shading.occluder_depth = upload_occluder_depth(scene, window);
   shading.multisampled = options.msaa_samples > 1;
   shading.detail_px = options.simplify_px;
@@ -249,12 +315,10 @@ Layer Renderer::Impl::draw_layer(const LayerScene& scene, const Camera& camera) 
     begin_opaque_state();
     occluders.draw(shaders, scene.occluders, camera);
     begin_opaque_state();
-    model_passes.draw_geometry(items, shading);
+    model_passes.draw_geometry(*catching.items, shading);
     geometry->read_depth(window, layer.depth);
     clock.end_of("depth");
   }
-  check_errors();
-  return layer;
 }
 
 void Renderer::Impl::draw_layer_color(const LayerScene& scene, const Camera& camera,
@@ -294,7 +358,7 @@ OpaqueImages Renderer::Impl::draw_opaque(const OpaqueScene& scene, const Camera&
 
   ShadingInput shading;
   shading.camera = &camera;
-  shading.light = &scene.light;
+  light_by(scene.light, shading);
   shading.shadow = shadow;
   shading.exposure = scene.exposure;
   shading.multisampled = options.msaa_samples > 1;
@@ -340,6 +404,8 @@ void Renderer::forget() {
   impl_->surfaces.clear();
   impl_->models.clear();
   impl_->catchers.clear();
+  impl_->environment.clear();
+  impl_->software.clear();
   impl_->shadow_signature = 0;
 }
 

@@ -22,6 +22,9 @@ struct RendererOptions {
   /// that lack them: the same bytes on any x86-64, at 1.25 to 1.6 times the time. Holds for the
   /// whole process from its first context on; for golden tests.
   bool portable_floats = false;
+  /// Layers are always drawn through OpenGL, never by the processor directly: slower, for
+  /// comparison.
+  bool only_opengl = false;
   bool time_passes = false;  ///< for pass_times_ms(); slows down
 };
 

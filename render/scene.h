@@ -32,6 +32,8 @@ struct Sun {
   float angular_radius_rad = 0.05F;
 };
 
+class Environment;
+
 /// Light of a scene: diffuse surroundings as spherical harmonics of order 2 (9 coefficients, linear
 /// RGB radiance, real SH basis without the Condon-Shortley sign: 1, y, z, x, xy, yz, 3z^2-1, xz,
 /// x^2-y^2 of the world direction) and one main direction.
@@ -39,6 +41,11 @@ struct Light {
   std::array<glm::vec3, 9>
       ambient_sh{};  ///< [0] alone: uniform surroundings of radiance c / 3.5449
   Sun sun;
+  /// Where reflections are taken from instead of the harmonics; see render/environment.h. The
+  /// harmonics are still what matt surfaces are lit by.
+  std::shared_ptr<const Environment> environment;
+  glm::mat3 environment_from_world = glm::mat3(1.0F);
+  float environment_gain = 1.0F;
   static Light uniform(glm::vec3 ambient_radiance, Sun sun);
 };
 
@@ -62,6 +69,11 @@ struct PlanePatch {
   float edge_softness_m = 0.05F;  ///< shadows fade out over this width at the polygon's edge
 };
 
+enum class ToneMap {
+  kNone,     ///< light beyond 1 is cut off: what is to match a video
+  kNeutral,  ///< Khronos PBR Neutral: colours up to about 0.8 as they are, brighter ones compressed
+};
+
 /// What one layer is drawn from.
 struct LayerScene {
   std::vector<Instance> instances;
@@ -70,7 +82,9 @@ struct LayerScene {
   const ImageF* occluder_depth = nullptr;  ///< optional, metres along z, 0 = unknown; camera's size
   Light light;
   float shadow_strength = 1.0F;  ///< 0 none .. 1 physically by the light
-  bool with_depth = true;        ///< Layer::depth is wanted; a second pass over the meshes
+  float exposure = 1.0F;         ///< factor on the objects' light
+  ToneMap tone_map = ToneMap::kNone;
+  bool with_depth = true;  ///< Layer::depth is wanted; a second pass over the meshes
 };
 
 /// RGBA8, sRGB-encoded, premultiplied: out = layer.rgb + (1 - layer.a) * frame. A shadow is black
@@ -81,7 +95,8 @@ struct Layer {
   ImageF depth;
   struct Rect {
     int x = 0, y = 0, width = 0, height = 0;
-  } bounds;  ///< outside it all is transparent
+  } bounds;                   ///< outside it all is transparent
+  bool by_processor = false;  ///< drawn without OpenGL; see RendererOptions::only_opengl
 };
 
 /// A surface of an opaque scene such as the synthetic generator's: own triangles, one material. Lit

@@ -12,6 +12,9 @@ uniform vec3 u_to_light;
 uniform vec3 u_sun_radiance;
 
 #include "color.glsl"
+#ifdef TONE_NEUTRAL
+#include "tone.glsl"
+#endif
 #include "stretched.glsl"
 #include "texture_slot.glsl"
 #include "model_maps.glsl"
@@ -36,11 +39,24 @@ uniform vec3 u_sun_radiance;
 out vec4 o_color;
 
 #ifndef UNLIT
+#ifdef ENVIRONMENT
+uniform samplerCube u_environment;
+uniform mat3 u_environment_from_world;
+uniform float u_environment_last;  // level of roughness 1
+uniform float u_environment_gain;
+
+vec3 reflected_ambient(vec3 n, vec3 v, float alpha) {
+  return u_environment_gain *
+         textureLod(u_environment, u_environment_from_world * reflect(-v, n),
+                    sqrt(alpha) * u_environment_last).rgb;
+}
+#else
 // The reflected lobe is as blurred as GGX is wide: band l fades with alpha, so that a mirror sees the
 // harmonics themselves and roughness 1 about the cosine lobe.
 vec3 reflected_ambient(vec3 n, vec3 v, float alpha) {
   return evaluate_sh(reflect(-v, n), vec3(1.0, exp(-0.45 * alpha), exp(-1.4 * alpha)));
 }
+#endif
 
 struct Surface {
   vec3 n;
@@ -172,6 +188,14 @@ vec3 shade(vec3 albedo, float metallic, float roughness, float kept) {
 }
 #endif
 
+vec3 shown(vec3 color) {
+  color *= u_exposure;
+#ifdef TONE_NEUTRAL
+  color = tone_neutral(color);
+#endif
+  return srgb_encode(color);
+}
+
 void main() {
   vec4 base = base_color();
   float alpha = 1.0;
@@ -195,14 +219,14 @@ void main() {
 #endif
   float covers = 1.0;
 #ifdef UNLIT
-  vec3 color = srgb_encode(base.rgb * u_exposure);
+  vec3 color = shown(base.rgb);
 #else
   vec2 mr = metallic_roughness();
   float kept = 1.0;
 #ifdef TRANSMISSION
   kept = 1.0 - transmitted_share() * (1.0 - mr.x);
 #endif
-  vec3 color = srgb_encode(shade(base.rgb, mr.x, mr.y, kept) * u_exposure);
+  vec3 color = shown(shade(base.rgb, mr.x, mr.y, kept));
 #ifdef TRANSMISSION
   // What is behind shows through, darkened by the mean of the tint; a reflection covers it.
   float tint = dot(base.rgb, vec3(1.0 / 3.0));

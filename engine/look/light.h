@@ -18,6 +18,7 @@ struct SceneLight {
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
   Eigen::Vector3d sun_direction = -Eigen::Vector3d::UnitY();  ///< unit, towards the light
   Eigen::Vector3d sun_radiance = Eigen::Vector3d::Constant(0.3);
+  double exposure = 1.0;  ///< that all of these hold already
 
   /// Real spherical harmonics of the surroundings, order 2, ordered (0,0), (1,-1), (1,0), (1,1),
   /// ... with Y1 = 0.4886 (y, z, x); `gain` scales it.

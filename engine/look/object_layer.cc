@@ -13,6 +13,10 @@ int divide_by_255(int x) {
 }
 
 void blend(const cv::Vec4b& over, cv::Vec3b& under) {
+  if (over[3] == 255) {
+    under = {over[2], over[1], over[0]};
+    return;
+  }
   const int keep = 255 - over[3];
   for (int channel = 0; channel < 3; ++channel) {
     const int value = over[2 - channel] + divide_by_255(keep * under[channel]);

@@ -40,6 +40,7 @@ cv::Mat to_grey(const cv::Mat& image) {
 render::RendererOptions renderer_options(const PainterOptions& options) {
   render::RendererOptions result;
   result.shader_dir = options.shader_dir.string();
+  result.only_opengl = options.only_opengl;
   return result;
 }
 
@@ -77,6 +78,8 @@ void FramePainter::set_light(const SceneLight& light) {
                          [](const Eigen::Vector3d& c) { return to_glm(c); });
   scene_.light.sun.radiance = to_glm(light.sun_radiance);
   scene_.light.sun.direction_to_light = to_glm(light.sun_direction);
+  scene_.light.environment = light_.environment();
+  scene_.light.environment_gain = static_cast<float>(light.exposure);
 }
 
 void FramePainter::set_content(const Content& content) {
@@ -119,6 +122,7 @@ bool FramePainter::paint(const slam::FrameInput& frame, const slam::Pose& world_
   times_.look_ms = watch.lap_ms();
 
   render::Layer drawn = renderer_.draw_layer(scene_, camera);
+  by_processor_ = drawn.by_processor;
   ObjectLayer layer = view_layer(drawn);
   times_.draw_ms = watch.lap_ms();
   times_.composite_ms = 0.0;

@@ -21,6 +21,7 @@ struct PainterOptions {
   std::filesystem::path shader_dir;
   PlacedSceneOptions placing;
   Look look;
+  bool only_opengl = false;  ///< see render::RendererOptions
   std::uint64_t seed = 1;
 };
 
@@ -49,6 +50,8 @@ class FramePainter {
   bool paint(const slam::FrameInput& frame, const slam::Pose& world_from_cam, double time_s,
              cv::Mat& picture);
   const PaintTimes& times() const { return times_; }
+  /// Whether the last layer was drawn without OpenGL.
+  bool by_processor() const { return by_processor_; }
   std::string renderer_description() const { return renderer_.description(); }
 
  private:
@@ -65,6 +68,7 @@ class FramePainter {
   render::LayerScene scene_;
   render::ImageF depth_;
   PaintTimes times_;
+  bool by_processor_ = false;
 };
 
 /// 8-bit BGR copy of a grey or colour image.

@@ -16,10 +16,12 @@
 #include "engine/output/png.h"
 #include "engine/output/video.h"
 #include "engine/pipeline/frame_painter.h"
+#include "engine/pipeline/painting_threads.h"
 #include "engine/pipeline/picture_flow.h"
 #include "engine/pipeline/scene_light.h"
 #include "engine/scene/content.h"
 #include "engine/user_error.h"
+#include "render/gltf/polished.h"
 
 namespace planecast::engine {
 namespace {
@@ -44,12 +46,10 @@ class SequenceRenderer {
         folder_(folder),
         markers_(find_markers(sequence, reconstruction, markers_of(scene))),
         content_(load_content({reconstruction, options.causal, markers_}, scene)),
-        light_(sequence, reconstruction, scene.light, light_options()),
-        painter_(reconstruction, content_, light_, painter_options()) {
+        light_(sequence, reconstruction, scene.light, light_options()) {
     for (const FrameRecord& record : reconstruction.frames) records_[record.index] = &record;
     result_.warnings = content_.warnings;
     result_.units_per_metre = content_.units_per_metre;
-    result_.renderer = painter_.renderer_description();
     result_.objects = object_records(content_, reconstruction);
   }
 
@@ -65,6 +65,7 @@ class SequenceRenderer {
     result.placing.occlusion = scene_.occlusion;
     result.placing.shadows = scene_.shadows;
     result.look = scene_.look;
+    result.only_opengl = options_.only_opengl;
     result.seed = options_.seed;
     return result;
   }
@@ -72,13 +73,18 @@ class SequenceRenderer {
     LightTrackOptions result;
     result.causal = options_.causal;
     result.follow_exposure = scene_.look.exposure;
+    result.reflections = std::ranges::any_of(content_.items, [](const ContentItem& item) {
+      return item.model != nullptr && render::is_polished(*item.model);
+    });
     return result;
   }
   void open_outputs();
   std::string content_key() const;
   int resume_frame() const;
   void write(const Picture& picture);
-  cv::Mat picture_of(const ReadFrame& job);
+  PaintingThreads::Paint make_painter() const;
+  PaintedFrame painted(FramePainter& painter, DebugOverlay* overlay, const ReadFrame& job) const;
+  void take(PaintedFrame& frame);
   void keep_still(int index, const cv::Mat& picture);
 
   Sequence& sequence_;
@@ -89,8 +95,6 @@ class SequenceRenderer {
   MarkerMap markers_;
   Content content_;
   LightTrack light_;
-  FramePainter painter_;
-  std::unique_ptr<DebugOverlay> overlay_;
   std::map<int, const FrameRecord*> records_;
   std::unique_ptr<VideoWriter> video_;
   std::vector<int> still_frames_;
@@ -120,7 +124,7 @@ std::string SequenceRenderer::content_key() const {
   key += "\nframes " + std::to_string(sequence_.first_frame()) + ":" +
          std::to_string(sequence_.end_frame());
   key += "\nseed " + std::to_string(options_.seed) + (options_.causal ? " causal" : "") +
-         (options_.debug_overlay ? " overlay" : "");
+         (options_.debug_overlay ? " overlay" : "") + (options_.only_opengl ? " opengl" : "");
   for (const ContentItem& item : content_.items) {
     const Eigen::Matrix4d pose = item.placed.anchor.plane_from_anchor.matrix();
     std::ostringstream numbers;
@@ -145,29 +149,55 @@ void SequenceRenderer::write(const Picture& picture) {
   write_png(picture.bgr, folder_ / "frames" / name);
 }
 
-cv::Mat SequenceRenderer::picture_of(const ReadFrame& job) {
-  if (!job.error.empty()) {
-    result_.unreadable.push_back(job.index);
-    if (!last_picture_.empty()) return last_picture_.clone();
-    return cv::Mat::zeros(reconstruction_.camera.height, reconstruction_.camera.width, CV_8UC3);
-  }
-  cv::Mat picture = to_bgr(job.frame.image);
+/// A painter of its own for each thread that paints: rendering contexts belong to one.
+PaintingThreads::Paint SequenceRenderer::make_painter() const {
+  const auto painter =
+      std::make_shared<FramePainter>(reconstruction_, content_, light_, painter_options());
+  std::shared_ptr<DebugOverlay> overlay;
+  if (options_.debug_overlay) overlay = std::make_shared<DebugOverlay>(reconstruction_);
+  return [this, painter, overlay](const ReadFrame& job) {
+    return painted(*painter, overlay.get(), job);
+  };
+}
+
+PaintedFrame SequenceRenderer::painted(FramePainter& painter, DebugOverlay* overlay,
+                                       const ReadFrame& job) const {
+  PaintedFrame result;
+  result.index = job.index;
+  result.renderer = painter.renderer_description();
+  result.readable = job.error.empty();
+  if (!result.readable) return result;
+  result.bgr = to_bgr(job.frame.image);
   const auto entry = records_.find(job.index);
-  if (entry == records_.end()) return picture;
+  if (entry == records_.end()) return result;
   const FrameRecord& record = *entry->second;
   const auto& pose = options_.causal ? record.causal_world_from_cam : record.world_from_cam;
   if (pose) {
     const double time_s = job.frame.timestamp - reconstruction_.frames.front().timestamp;
-    result_.with_content += painter_.paint(job.frame, *pose, time_s, picture) ? 1 : 0;
-    const PaintTimes& times = painter_.times();
-    result_.frame_times[job.index] = {
+    result.has_content = painter.paint(job.frame, *pose, time_s, result.bgr);
+    result.by_processor = result.has_content && painter.by_processor();
+    const PaintTimes& times = painter.times();
+    result.times = {
         {"look", times.look_ms}, {"draw", times.draw_ms}, {"composite", times.composite_ms}};
   }
-  if (options_.debug_overlay) {
-    if (!overlay_) overlay_ = std::make_unique<DebugOverlay>(reconstruction_);
-    overlay_->draw(record, options_.causal, picture);
+  if (overlay != nullptr) overlay->draw(record, options_.causal, result.bgr);
+  return result;
+}
+
+/// Counts the frame; one that could not be read shows the last picture again.
+void SequenceRenderer::take(PaintedFrame& frame) {
+  if (!frame.readable) {
+    result_.unreadable.push_back(frame.index);
+    frame.bgr = last_picture_.empty() ? cv::Mat::zeros(reconstruction_.camera.height,
+                                                       reconstruction_.camera.width, CV_8UC3)
+                                      : last_picture_;
   }
-  return picture;
+  last_picture_ = frame.bgr;
+  if (!frame.renderer.empty()) result_.renderer = frame.renderer;
+  result_.with_content += frame.has_content ? 1 : 0;
+  result_.by_processor += frame.by_processor ? 1 : 0;
+  if (!frame.times.empty()) result_.frame_times[frame.index] = std::move(frame.times);
+  ++result_.frames;
 }
 
 void SequenceRenderer::keep_still(int index, const cv::Mat& picture) {
@@ -188,17 +218,21 @@ RenderSequenceResult SequenceRenderer::run(const Progress& progress) {
     const bool threaded = options_.threads > 1;
     FrameReader reader(sequence_, begin, end, threaded);
     PictureWriter writer([this](const Picture& picture) { write(picture); }, threaded);
-    while (const std::optional<ReadFrame> job = reader.next()) {
-      if (!job->error.empty() && !options_.skip_unreadable) {
-        fatal = job->error;
-        break;
+    PaintingThreads painters([this] { return make_painter(); }, options_.threads);
+    for (bool more = true; more || !painters.empty();) {
+      while (more && !painters.full()) {
+        std::optional<ReadFrame> job = reader.next();
+        more = job && (job->error.empty() || options_.skip_unreadable);
+        if (more) painters.put(std::move(*job));
+        if (job && !more) fatal = job->error;
       }
-      cv::Mat picture = picture_of(*job);
-      last_picture_ = picture;
-      keep_still(job->index, picture);
-      writer.put({job->index, picture});
-      ++result_.frames;
-      if (progress) progress(job->index + 1 - sequence_.first_frame(), total);
+      if (painters.empty()) break;
+      PaintedFrame frame = painters.take();
+      const int done = frame.index + 1 - sequence_.first_frame();
+      take(frame);
+      keep_still(frame.index, frame.bgr);
+      writer.put({frame.index, frame.bgr});
+      if (progress) progress(done, total);
     }
     writer.finish();
   }
@@ -212,9 +246,11 @@ RenderSequenceResult SequenceRenderer::run(const Progress& progress) {
 }
 
 RenderSequenceResult SequenceRenderer::draw(const std::vector<int>& frames) {
+  const PaintingThreads::Paint paint = make_painter();
   for (const int index : frames) {
-    result_.stills.emplace_back(index, picture_of({index, sequence_.read(index), ""}));
-    ++result_.frames;
+    PaintedFrame frame = paint({index, sequence_.read(index), ""});
+    take(frame);
+    result_.stills.emplace_back(index, frame.bgr);
   }
   return std::move(result_);
 }

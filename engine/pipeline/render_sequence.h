@@ -22,6 +22,7 @@ struct RenderSequenceOptions {
   bool debug_overlay = false;    ///< plane outlines and the frame's state drawn over the picture
   bool resume = false;           ///< go on after the last complete video segment of a killed run
   bool skip_unreadable = false;  ///< repeat the last picture instead of ending
+  bool only_opengl = false;      ///< layers are never drawn by the processor directly
   int threads = 2;               ///< changes no result
   std::uint64_t seed = 1;
   int stills = 4;  ///< pictures kept for the report
@@ -30,6 +31,7 @@ struct RenderSequenceOptions {
 struct RenderSequenceResult {
   int frames = 0;                ///< written by this call
   int with_content = 0;          ///< of them, those in which something was drawn
+  int by_processor = 0;          ///< of those, the ones drawn without OpenGL
   double units_per_metre = 0.0;  ///< as the sizes counted; 0: the map has no scale
   std::vector<int> unreadable;
   std::filesystem::path video;                  ///< empty when there is none

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/look/exposure.h"
+#include "engine/look/surroundings.h"
 #include "engine/user_error.h"
 
 namespace planecast::engine {
@@ -30,6 +31,7 @@ std::vector<const FrameRecord*> sampled_frames(const Sequence& sequence,
 SceneLight scaled(SceneLight light, double gain) {
   light.mean *= gain;
   light.sun_radiance *= gain;
+  light.exposure *= gain;
   return light;
 }
 
@@ -65,6 +67,8 @@ LightTrack::LightTrack(Sequence& sequence, const Reconstruction& reconstruction,
   without_samples_ =
       fixed ? fixed_light(*fixed, reconstruction.up) : estimator.estimate(reconstruction.up);
   if (fixed && !options.follow_exposure) return;
+  const bool reflections = options.reflections && !options.causal && !fixed;
+  Surroundings surroundings;
   const auto frames = sampled_frames(sequence, reconstruction, options);
   const std::size_t view_step =
       std::max<std::size_t>(1, frames.size() / static_cast<std::size_t>(options.most_views));
@@ -77,6 +81,7 @@ LightTrack::LightTrack(Sequence& sequence, const Reconstruction& reconstruction,
       const cv::Mat image = sequence.read(frame.index).image;
       if (options.follow_exposure) sample.gain = exposure_gain(reconstruction, image, pose);
       if (!fixed && i % view_step == 0) estimator.add(image, reconstruction.camera, pose);
+      if (reflections) surroundings.add(image, reconstruction.camera, pose, sample.gain);
     } catch (const UserError&) {
       continue;  // the render pass reports it
     }
@@ -90,6 +95,9 @@ LightTrack::LightTrack(Sequence& sequence, const Reconstruction& reconstruction,
   if (!fixed && !options.causal) {
     const SceneLight light = estimator.estimate(reconstruction.up);
     for (Sample& sample : samples_) sample.light = light;
+    if (reflections && surroundings.seen() > 0.0) {
+      environment_ = std::make_shared<render::Environment>(surroundings.panorama(light));
+    }
   }
   if (options.causal) {
     filter(options.causal_share);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include "engine/pipeline/reconstruction.h"
 #include "engine/scene/scene_file.h"
 #include "engine/sequence/sequence.h"
+#include "render/environment.h"
 
 namespace planecast::engine {
 
@@ -17,6 +19,7 @@ SceneLight fixed_light(const FixedLight& light, const Eigen::Vector3d& up);
 struct LightTrackOptions {
   bool causal = false;          ///< from what was seen up to each frame alone
   bool follow_exposure = true;  ///< brightness follows the pictures'
+  bool reflections = false;     ///< what the camera saw of the room is kept; not causal
   int stride = 6;               ///< frames from one sample to the next, at least
   int most_samples = 100;
   int most_views = 24;          ///< samples that the surroundings are estimated from
@@ -39,6 +42,8 @@ class LightTrack {
   explicit LightTrack(const SceneLight& light) : without_samples_(light) {}
 
   SceneLight at(int frame_index) const;
+  /// What polished things reflect, at exposure 1; null when it was not wanted or not seen.
+  const std::shared_ptr<const render::Environment>& environment() const { return environment_; }
 
  private:
   struct Sample {
@@ -51,6 +56,7 @@ class LightTrack {
 
   bool causal_ = false;
   SceneLight without_samples_;
+  std::shared_ptr<const render::Environment> environment_;
   std::vector<Sample> samples_;  ///< ascending
 };
 

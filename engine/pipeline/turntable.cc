@@ -61,6 +61,15 @@ render::Light studio_light(const Eigen::Matrix3d& world_from_cam) {
   return light;
 }
 
+/// The map stands upright, its middle column behind the model as seen from the front.
+void light_by(const EnvironmentLight& given, render::LayerScene& scene) {
+  scene.light.ambient_sh = given.environment->harmonics(glm::mat3(1.0F));
+  scene.light.environment = given.environment;
+  scene.light.sun = given.sun;
+  scene.exposure = given.exposure;
+  scene.tone_map = render::ToneMap::kNeutral;
+}
+
 struct View {
   slam::Camera camera;
   slam::Pose world_from_cam = slam::Pose::Identity();
@@ -169,7 +178,11 @@ cv::Mat draw_turntable(const std::shared_ptr<const render::Model>& model,
   cv::Mat sheet(rows * side, columns * side, CV_8UC3, cv::Scalar(255, 255, 255));
   for (int number = 0; number < views; ++number) {
     const View view = own ? own_view(stage, *model, options) : turned_view(stage, options, number);
-    scene.light = studio_light(view.world_from_cam.linear());
+    if (options.environment) {
+      light_by(*options.environment, scene);
+    } else {
+      scene.light = studio_light(view.world_from_cam.linear());
+    }
     render::Camera camera = to_render_camera(view.camera, view.world_from_cam.inverse());
     camera.near_plane = static_cast<float>(view.near_m);
     camera.far_plane = static_cast<float>(view.far_m);

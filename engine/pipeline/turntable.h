@@ -2,7 +2,9 @@
 
 #include <memory>
 #include <opencv2/core.hpp>
+#include <optional>
 
+#include "engine/look/environment_file.h"
 #include "render/scene.h"
 
 namespace planecast::engine {
@@ -15,7 +17,9 @@ struct TurntableOptions {
   double elevation_deg = 20.0;  ///< of the camera over the horizon
   double azimuth_deg = 0.0;     ///< of the first view: 0 looks at the model's front (+z)
   int camera = -1;              ///< of the model's own cameras: one view through it instead
-  bool simplify = true;         ///< fewer triangles where the screen does not show the difference
+  /// Surroundings that light the model instead of a studio, their colours tone mapped.
+  std::optional<EnvironmentLight> environment;
+  bool simplify = true;  ///< fewer triangles where the screen does not show the difference
 };
 
 /// Whether `model` has a camera of that index.

@@ -60,19 +60,9 @@ render::Mesh board(float height) {
   return {{print, edges}, {}};
 }
 
-}  // namespace
+double shape_of(const cv::Mat& bgr) { return static_cast<double>(bgr.rows) / bgr.cols; }
 
-PosterPrint::PosterPrint(const Poster& poster) {
-  if (!poster.video) {
-    show(read_color_image(poster.file));
-    return;
-  }
-  video_ = open_video(poster.file, {});
-  at(0.0, true);
-}
-
-void PosterPrint::show(const cv::Mat& bgr) {
-  height_ = static_cast<double>(bgr.rows) / bgr.cols;
+std::shared_ptr<const render::Model> print_of(const cv::Mat& bgr) {
   auto model = std::make_shared<render::Model>();
   model->images.push_back(to_texture(bgr));
   render::ModelTexture texture;
@@ -88,26 +78,40 @@ void PosterPrint::show(const cv::Mat& bgr) {
   paper.roughness = 0.9F;
   paper.base_color = glm::vec4(0.85F, 0.85F, 0.85F, 1.0F);
   model->materials = {print, paper, render::Material{}};
-  model->meshes.push_back(board(static_cast<float>(height_)));
+  model->meshes.push_back(board(static_cast<float>(shape_of(bgr))));
   render::Node node;
   node.name = "poster";
   node.mesh = 0;
   model->nodes.push_back(node);
   model->order = {0};
-  model_ = model;
+  return model;
 }
 
-const std::shared_ptr<const render::Model>& PosterPrint::at(double time_s, bool loop) {
-  if (!video_) return model_;
+}  // namespace
+
+PosterPrint::PosterPrint(const Poster& poster) {
+  if (!poster.video) {
+    const cv::Mat picture = read_color_image(poster.file);
+    height_ = shape_of(picture);
+    shown_.push_back({0, print_of(picture)});
+    return;
+  }
+  video_ = open_video(poster.file, {});
+  height_ = shape_of(video_->read(0).image);
+}
+
+std::shared_ptr<const render::Model> PosterPrint::at(double time_s, bool loop) {
+  if (!video_) return shown_.front().model;
   const int frames = video_->end_frame();
   // A frame shows from its own time on; rounding must not show the one before it.
   const auto wanted = static_cast<long>(std::floor(time_s * video_->fps() + 1e-6));
-  const long frame = loop ? wanted % frames : std::min<long>(wanted, frames - 1);
-  if (frame != shown_frame_) {
-    show(video_->read(static_cast<int>(frame)).image);
-    shown_frame_ = static_cast<int>(frame);
-  }
-  return model_;
+  const auto frame = static_cast<int>(loop ? wanted % frames : std::min<long>(wanted, frames - 1));
+  const std::lock_guard lock(mutex_);
+  const auto known = std::ranges::find(shown_, frame, &Shown::frame);
+  if (known != shown_.end()) return known->model;
+  shown_.push_back({frame, print_of(video_->read(frame).image)});
+  if (shown_.size() > kKept) shown_.pop_front();
+  return shown_.back().model;
 }
 
 }  // namespace planecast::engine

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <deque>
 #include <memory>
+#include <mutex>
 
 #include "engine/scene/scene_file.h"
 #include "engine/sequence/sequence.h"
@@ -17,17 +19,22 @@ class PosterPrint {
 
   /// The print as it looks `time_s` after its start: for a video the frame of that time, which is
   /// decoded, over and over again or (without `loop`) until the last one stays. The same frame is
-  /// the same object.
-  const std::shared_ptr<const render::Model>& at(double time_s, bool loop);
+  /// the same object while it is among the latest few. Several threads may ask.
+  std::shared_ptr<const render::Model> at(double time_s, bool loop);
   double height() const { return height_; }
 
  private:
-  void show(const cv::Mat& bgr);
+  /// Painting threads are a few frames apart.
+  static constexpr std::size_t kKept = 8;
+  struct Shown {
+    int frame = 0;
+    std::shared_ptr<const render::Model> model;
+  };
 
+  std::mutex mutex_;                 ///< of the video and what it shows
   std::unique_ptr<Sequence> video_;  ///< null: a picture
-  int shown_frame_ = -1;
   double height_ = 1.0;
-  std::shared_ptr<const render::Model> model_;
+  std::deque<Shown> shown_;  ///< a picture's only one, or a video's latest
 };
 
 }  // namespace planecast::engine

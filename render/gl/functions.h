@@ -59,6 +59,7 @@ class GlContext;
   X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)                                       \
   X(PFNGLGETSHADERIVPROC, GetShaderiv)                                                 \
   X(PFNGLGETSTRINGPROC, GetString)                                                     \
+  X(PFNGLGETTEXTUREIMAGEPROC, GetTextureImage)                                         \
   X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)                                   \
   X(PFNGLLINKPROGRAMPROC, LinkProgram)                                                 \
   X(PFNGLNAMEDBUFFERDATAPROC, NamedBufferData)                                         \
@@ -86,6 +87,7 @@ class GlContext;
   X(PFNGLTEXTUREPARAMETERIPROC, TextureParameteri)                                     \
   X(PFNGLTEXTURESTORAGE2DPROC, TextureStorage2D)                                       \
   X(PFNGLTEXTURESUBIMAGE2DPROC, TextureSubImage2D)                                     \
+  X(PFNGLTEXTURESUBIMAGE3DPROC, TextureSubImage3D)                                     \
   X(PFNGLUSEPROGRAMPROC, UseProgram)                                                   \
   X(PFNGLVERTEXARRAYATTRIBBINDINGPROC, VertexArrayAttribBinding)                       \
   X(PFNGLVERTEXARRAYATTRIBFORMATPROC, VertexArrayAttribFormat)                         \

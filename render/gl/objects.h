@@ -56,6 +56,8 @@ class GlHandle {
 PLANECAST_GL_TRAITS(BufferHandle, gl.CreateBuffers(1, &id), gl.DeleteBuffers(1, &id))
 PLANECAST_GL_TRAITS(TextureHandle, gl.CreateTextures(GL_TEXTURE_2D, 1, &id),
                     gl.DeleteTextures(1, &id))
+PLANECAST_GL_TRAITS(CubeTextureHandle, gl.CreateTextures(GL_TEXTURE_CUBE_MAP, 1, &id),
+                    gl.DeleteTextures(1, &id))
 PLANECAST_GL_TRAITS(SamplerHandle, gl.CreateSamplers(1, &id), gl.DeleteSamplers(1, &id))
 PLANECAST_GL_TRAITS(FramebufferHandle, gl.CreateFramebuffers(1, &id), gl.DeleteFramebuffers(1, &id))
 PLANECAST_GL_TRAITS(RenderbufferHandle, gl.CreateRenderbuffers(1, &id),

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "render/passes/content_hash.h"
 #include "render/passes/texture_units.h"
@@ -55,6 +56,20 @@ TextureHandle make_penumbra_texture(const Gl& gl, int side) {
   gl.TextureParameteri(id, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
   gl.TextureParameteri(id, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
   return texture;
+}
+
+MipTexture read_levels(const Gl& gl, GLuint texture, int side) {
+  gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
+  gl.PixelStorei(GL_PACK_ROW_LENGTH, 0);
+  std::vector<ImageU8> levels;
+  for (int level = 0; side >> level > 0; ++level) {
+    ImageU8& image = levels.emplace_back(side >> level, side >> level, 4);
+    gl.GetTextureImage(texture, level, GL_RGBA, GL_UNSIGNED_BYTE,
+                       static_cast<GLsizei>(image.pixels.size()), image.pixels.data());
+  }
+  MipTexture::Options options;
+  options.wrap_s = options.wrap_t = GL_CLAMP_TO_EDGE;
+  return {levels, options};
 }
 
 }  // namespace
@@ -202,6 +217,7 @@ void CatcherPass::bake(ShaderLibrary& shaders, const CatcherInput& input, const 
   gl_->BindVertexArray(no_vertices_.id());
   gl_->DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
   maps.dark = dark_part(prepared.plan.region);
+  maps.baked_in_memory.reset();
   gl_->GenerateTextureMipmap(maps.baked.id());
 }
 
@@ -234,6 +250,18 @@ std::vector<glm::vec3> CatcherPass::touched_points(const CatcherInput& input) co
     points.insert(points.end(), corners.begin(), corners.end());
   }
   return points;
+}
+
+const std::vector<ShadowOnPlane>& CatcherPass::shadows_in_memory() {
+  shadows_in_memory_.clear();
+  for (const Prepared& prepared : prepared_) {
+    Maps& maps = *prepared.maps;
+    if (!maps.baked_in_memory)
+      maps.baked_in_memory = read_levels(*gl_, maps.baked.id(), kBakedSide);
+    shadows_in_memory_.push_back({prepared.plan.frame, maps.dark, prepared.plan.region,
+                                  &*maps.baked_in_memory, prepared.plan.sun_share});
+  }
+  return shadows_in_memory_;
 }
 
 void CatcherPass::set_plane(const Program& program, const PlaneFrame& frame,

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "render/gl/objects.h"
@@ -10,6 +11,7 @@
 #include "render/passes/model_passes.h"
 #include "render/passes/shadow_map.h"
 #include "render/scene.h"
+#include "render/software/baked_shadow.h"
 
 namespace planecast::render {
 
@@ -39,6 +41,8 @@ class CatcherPass {
   /// Blends black over the bound target; reads its depth, leaves it.
   void draw(ShaderLibrary& shaders, const CatcherInput& input, GLuint occluder_depth,
             float occluder_tolerance) const;
+  /// What draw() would draw, in memory. For catchers of a scene that stands still.
+  const std::vector<ShadowOnPlane>& shadows_in_memory();
   void clear();
 
  private:
@@ -55,11 +59,12 @@ class CatcherPass {
     int contact_side = 0;
     TextureHandle baked;  ///< what catcher.frag finds over the plan's region
     PlaneRegion dark;     ///< the part of it that is not quite bright
+    std::optional<MipTexture> baked_in_memory;
   };
   struct Prepared {
     CatcherPlan plan;
     const Mask* mask = nullptr;
-    const Maps* maps = nullptr;
+    Maps* maps = nullptr;
     float edge_softness_m = 0.0F;
 
     PlaneRegion drawn(bool still) const { return still ? maps->dark : plan.region; }
@@ -88,6 +93,7 @@ class CatcherPass {
   std::map<std::uint64_t, Mask> masks_;
   std::map<std::size_t, Maps> maps_;  ///< by the patch's place in the scene
   std::vector<Prepared> prepared_;
+  std::vector<ShadowOnPlane> shadows_in_memory_;
 };
 
 }  // namespace planecast::render

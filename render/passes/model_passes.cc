@@ -17,27 +17,9 @@ bool cut_out(const Material& material) { return material.alpha_mode != AlphaMode
 
 bool is_surface(const DrawItem& item) { return item.mode == GL_TRIANGLES; }
 
-/// Inverse transpose up to a factor, defined for singular matrices too.
-glm::mat3 normal_matrix(const glm::mat4& matrix) {
-  const glm::mat3 m(matrix);
-  const glm::mat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
-  return glm::determinant(m) < 0.0F ? -cofactors : cofactors;
-}
-
 float view_depth(const DrawItem& item, const Camera& camera) {
   const glm::vec4 center(0.5F * (item.box.min + item.box.max), 1.0F);
   return (camera.camera_from_world * item.world_from_shape * center).z;
-}
-
-/// How far a simplified item may be off in the world to stay within `pixels` on the screen, at its
-/// nearest point.
-float allowed_error_m(const DrawItem& item, const Camera& camera, float pixels) {
-  float nearest = camera.far_plane;
-  for (const glm::vec3& corner : box_corners(item.box, item.world_from_shape)) {
-    nearest = std::min(nearest, (camera.camera_from_world * glm::vec4(corner, 1.0F)).z);
-  }
-  const float focal = std::max(std::abs(camera.fx), std::abs(camera.fy));
-  return pixels * std::max(nearest, camera.near_plane) / focal;
 }
 
 bool has(const TextureSlot& slot) { return slot.texture >= 0; }
@@ -47,10 +29,7 @@ void add_layer_variants(const Material& material, std::vector<std::string>& defi
     if (condition) defines.emplace_back(name);
     return condition;
   };
-  const bool plain = material.ior == 1.5F && material.specular == 1.0F &&
-                     material.specular_color == glm::vec3(1.0F) && !has(material.specular_map) &&
-                     !has(material.specular_color_map);
-  if (when(!plain, "SPECULAR")) {
+  if (when(!plain_reflectance(material), "SPECULAR")) {
     when(has(material.specular_map), "SPECULAR_MAP");
     when(has(material.specular_color_map), "SPECULAR_COLOR_MAP");
   }
@@ -82,6 +61,7 @@ std::vector<std::string> shading_variant(const DrawItem& item, const ShadingInpu
   when(material.alpha_mode == AlphaMode::kMask && input.multisampled, "SAMPLE_COVERAGE");
   when(material.alpha_mode == AlphaMode::kBlend, "ALPHA_BLEND");
   when(input.occluder_depth != 0, "OCCLUDER_DEPTH");
+  when(input.tone_map == ToneMap::kNeutral, "TONE_NEUTRAL");
   if (material.unlit || item.unlit) {
     defines.emplace_back("UNLIT");
     return defines;
@@ -93,11 +73,33 @@ std::vector<std::string> shading_variant(const DrawItem& item, const ShadingInpu
   when(sun, "SUN");
   when(sun && input.shadow != nullptr, "SHADOWS");
   when(lamps, "LAMPS");
+  when(input.environment != 0, "ENVIRONMENT");
   add_layer_variants(material, defines);
   return defines;
 }
 
 }  // namespace
+
+glm::mat3 normal_matrix(const glm::mat4& matrix) {
+  const glm::mat3 m(matrix);
+  const glm::mat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+  return glm::determinant(m) < 0.0F ? -cofactors : cofactors;
+}
+
+float allowed_error_m(const DrawItem& item, const Camera& camera, float pixels) {
+  float nearest = camera.far_plane;
+  for (const glm::vec3& corner : box_corners(item.box, item.world_from_shape)) {
+    nearest = std::min(nearest, (camera.camera_from_world * glm::vec4(corner, 1.0F)).z);
+  }
+  const float focal = std::max(std::abs(camera.fx), std::abs(camera.fy));
+  return pixels * std::max(nearest, camera.near_plane) / focal;
+}
+
+bool plain_reflectance(const Material& material) {
+  return material.ior == 1.5F && material.specular == 1.0F &&
+         material.specular_color == glm::vec3(1.0F) && !has(material.specular_map) &&
+         !has(material.specular_color_map);
+}
 
 void ModelPasses::bind_map(const DrawItem& item, const Program& program, const TextureSlot& slot,
                            TextureUse use, unsigned unit, const char* name) const {
@@ -215,6 +217,13 @@ void ModelPasses::set_lit(const DrawItem& item, const Program& program,
            "occlusion");
   bind_map(item, program, material.emissive_map, TextureUse::kColor, kUnitEmissive, "emissive_map");
   program.set("u_ambient_sh", std::span<const glm::vec3>(input.light->ambient_sh));
+  if (input.environment != 0) {
+    gl_->BindTextureUnit(kUnitEnvironment, input.environment);
+    program.set("u_environment", static_cast<int>(kUnitEnvironment));
+    program.set("u_environment_from_world", input.light->environment_from_world);
+    program.set("u_environment_gain", input.light->environment_gain);
+    program.set("u_environment_last", static_cast<float>(input.environment_levels - 1));
+  }
   program.set("u_eye", camera_position(*input.camera));
   program.set("u_to_light", glm::normalize(sun.direction_to_light));
   program.set("u_sun_radiance", sun.radiance);

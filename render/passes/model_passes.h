@@ -16,9 +16,22 @@ struct ShadingInput {
   GLuint occluder_depth = 0;          ///< texture of the camera's size, 0: none
   float occluder_tolerance = 0.02F;
   float exposure = 1.0F;
+  ToneMap tone_map = ToneMap::kNone;
+  GLuint environment = 0;  ///< cube texture, 0: reflections come from the harmonics
+  int environment_levels = 0;
   bool multisampled = true;
   float detail_px = 0.0F;  ///< how far simplified meshes may be off on the screen
 };
+
+/// Inverse transpose up to a factor, defined for singular matrices too.
+glm::mat3 normal_matrix(const glm::mat4& matrix);
+
+/// How far a simplified item may be off in the world to stay within `pixels` on the screen, at its
+/// nearest point.
+float allowed_error_m(const DrawItem& item, const Camera& camera, float pixels);
+
+/// Whether the dielectric part reflects as glTF's core says: 4 %, white.
+bool plain_reflectance(const Material& material);
 
 /// Draws posed models; one object for the passes they appear in.
 class ModelPasses {

@@ -51,13 +51,17 @@ bool finite(const glm::mat4& matrix) {
 
 }  // namespace
 
-void DrawItem::draw(const Gl& gl, float error_m) const {
+std::size_t DrawItem::level(float error_m) const {
   const glm::mat3 linear(world_from_shape);
   const float scale =
       std::max({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2]), 1e-20F});
   std::size_t chosen = 0;
   while (chosen + 1 < levels->size() && (*levels)[chosen + 1].error * scale <= error_m) ++chosen;
-  const IndexRange& range = (*levels)[chosen];
+  return chosen;
+}
+
+void DrawItem::draw(const Gl& gl, float error_m) const {
+  const IndexRange& range = (*levels)[level(error_m)];
   gl.BindVertexArray(vertex_array);
   gl.DrawElements(mode, range.count, GL_UNSIGNED_INT,
                   reinterpret_cast<const void*>(range.first * sizeof(std::uint32_t)));
@@ -125,6 +129,8 @@ void ModelSet::add_instance(const Instance& instance) {
       item.material = &model.materials[static_cast<std::size_t>(primitive.material)];
       item.model = &model;
       item.gpu = &gpu;
+      item.primitive = &primitive;
+      item.shape = &primitive.shape;
       item.world_from_shape = skinned
                                   ? instance.world_from_model
                                   : instance.world_from_model * pose.model_from_node[node_index];
@@ -162,17 +168,21 @@ void ModelSet::add_lamps(const Model& model, const glm::mat4& world_from_model,
 }
 
 void ModelSet::add_deformed(DrawItem item, const MeshBuffers& mesh,
-                            const std::vector<ShapeVertex>& shape) {
+                            std::vector<ShapeVertex> shape) {
   if (deformed_used_ == deformed_.size()) deformed_.emplace_back();
   Deformed& slot = deformed_[deformed_used_++];
   if (!slot.shape) slot.shape = BufferHandle(*gl_);
-  planecast::render::upload(*gl_, slot.shape, std::span<const ShapeVertex>(shape), GL_STREAM_DRAW);
+  slot.vertices = std::move(shape);
+  planecast::render::upload(*gl_, slot.shape, std::span<const ShapeVertex>(slot.vertices),
+                            GL_STREAM_DRAW);
   if (slot.base != &mesh) {
     slot.vertex_array = make_deformed_array(*gl_, slot.shape, mesh);
     slot.base = &mesh;
   }
   item.vertex_array = slot.vertex_array.id();
-  item.box = shape_box(shape);
+  item.box = shape_box(slot.vertices);
+  item.shape = &slot.vertices;
+  item.shape_version = ++deformations_;
   items_.push_back(item);
 }
 
@@ -196,6 +206,23 @@ GLuint ModelSet::texture(const DrawItem& item, const TextureSlot& slot, TextureU
   const GLuint id = handle.id();
   item.gpu->textures.emplace(std::make_pair(slot.texture, use), std::move(handle));
   return id;
+}
+
+const MipTexture& texture_in_memory(const DrawItem& item, const TextureSlot& slot, TextureUse use) {
+  const auto [place, is_new] = item.gpu->textures_in_memory.try_emplace({slot.texture, use});
+  if (is_new) {
+    const ModelTexture& texture = item.model->textures[static_cast<std::size_t>(slot.texture)];
+    MipTexture::Options options;
+    options.wrap_s = texture.wrap_s;
+    options.wrap_t = texture.wrap_t;
+    options.min_filter = texture.min_filter;
+    options.mag_filter = texture.mag_filter;
+    options.colors = use != TextureUse::kNumbers;
+    options.decode = use == TextureUse::kColor;
+    place->second =
+        MipTexture(item.model->images[static_cast<std::size_t>(texture.image)], options);
+  }
+  return place->second;
 }
 
 void ModelSet::clear() {

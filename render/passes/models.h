@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "render/gltf/animate.h"
 #include "render/gltf/model.h"
 #include "render/scene.h"
+#include "render/software/mip_texture.h"
 
 namespace planecast::render {
 
@@ -28,6 +30,7 @@ struct GpuModel {
   std::uint64_t serial = 0;  ///< of the upload: an address may come back with another model
   std::vector<std::vector<MeshBuffers>> meshes;  ///< by mesh and primitive
   std::map<std::pair<int, TextureUse>, TextureHandle> textures;
+  std::map<std::pair<int, TextureUse>, MipTexture> textures_in_memory;
 };
 
 /// One primitive of one instance, posed, ready for any pass.
@@ -39,10 +42,14 @@ struct DrawItem {
   const Material* material = nullptr;
   const Model* model = nullptr;
   GpuModel* gpu = nullptr;
+  const Primitive* primitive = nullptr;
+  const std::vector<ShapeVertex>* shape = nullptr;  ///< as posed
+  std::uint64_t shape_version = 0;                  ///< differs between deformed shapes
   glm::mat4 world_from_shape = glm::mat4(1.0F);
   Box box;  ///< of the shape, in its own frame
 
-  /// The coarsest level that is off by no more than `error_m` in the world.
+  /// The coarsest level that is off by no more than `error_m` in the world; 0 is the full mesh.
+  std::size_t level(float error_m) const;
   void draw(const Gl& gl, float error_m) const;
 };
 
@@ -75,6 +82,7 @@ class ModelSet {
   /// A deformed shape; kept for the item at the same place of the next frame.
   struct Deformed {
     const MeshBuffers* base = nullptr;
+    std::vector<ShapeVertex> vertices;
     BufferHandle shape;
     VertexArrayHandle vertex_array;
   };
@@ -82,20 +90,24 @@ class ModelSet {
   GpuModel& upload(const std::shared_ptr<const Model>& model);
   void add_instance(const Instance& instance);
   void add_lamps(const Model& model, const glm::mat4& world_from_model, const ModelPose& pose);
-  void add_deformed(DrawItem item, const MeshBuffers& mesh, const std::vector<ShapeVertex>& shape);
+  void add_deformed(DrawItem item, const MeshBuffers& mesh, std::vector<ShapeVertex> shape);
 
   const Gl* gl_;
   std::map<const Model*, GpuModel> models_;
-  std::vector<Deformed> deformed_;
+  std::deque<Deformed> deformed_;  ///< items point into it
   std::size_t deformed_used_ = 0;
   std::vector<DrawItem> items_;
   std::vector<Lamp> lamps_;
   std::uint64_t uploads_ = 0;
+  std::uint64_t deformations_ = 0;
   std::uint64_t signature_ = 0;
 };
 
 /// How the base colour of an item is kept.
 TextureUse base_color_use(const DrawItem& item);
+
+/// The texture of a slot that has one, for the processor; made on first use.
+const MipTexture& texture_in_memory(const DrawItem& item, const TextureSlot& slot, TextureUse use);
 
 /// Corners of the items' boxes in the world.
 std::vector<glm::vec3> world_box_points(const std::vector<DrawItem>& items);

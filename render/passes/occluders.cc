@@ -6,13 +6,6 @@
 #include "render/passes/view.h"
 
 namespace planecast::render {
-namespace {
-
-/// Share of the depth by which occluders retreat: the scatter of a plane's points is of this order.
-constexpr float kRetreat = 0.003F;
-
-}  // namespace
-
 OccluderPass::OccluderPass(const Gl& gl) : gl_(&gl), points_(gl), vertex_array_(gl) {
   const GLuint array = vertex_array_.id();
   gl.VertexArrayVertexBuffer(array, 0, points_.id(), 0, sizeof(glm::vec3));
@@ -30,7 +23,7 @@ void OccluderPass::draw(ShaderLibrary& shaders, const std::vector<PlanePatch>& o
   if (occluders.empty()) return;
   const Program& program = shaders.get("occluder.vert", "occluder.frag");
   program.use();
-  const glm::mat4 retreat = glm::scale(glm::mat4(1.0F), glm::vec3(1.0F + kRetreat));
+  const glm::mat4 retreat = glm::scale(glm::mat4(1.0F), glm::vec3(1.0F + kOccluderRetreat));
   program.set("u_clip_from_world", clip_from_camera(camera) * retreat * camera.camera_from_world);
   gl_->BindVertexArray(vertex_array_.id());
   gl_->ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);

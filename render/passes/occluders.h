@@ -8,6 +8,9 @@
 
 namespace planecast::render {
 
+/// Share of the depth by which occluders retreat: the scatter of a plane's points is of this order.
+inline constexpr float kOccluderRetreat = 0.003F;
+
 /// Writes the depth of flat polygons, concave and with holes, and nothing else. Filled by the
 /// even-odd rule in the stencil buffer, so that the measured outlines need neither triangulation
 /// nor to be simple. Pushed back by a small share of the depth, so that what stands on a plane is

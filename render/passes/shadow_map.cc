@@ -99,6 +99,15 @@ void ShadowMap::begin(const ShadowProjection& projection) {
   gl_->Disable(GL_BLEND);
 }
 
+std::vector<float> ShadowMap::read() const {
+  std::vector<float> depths(static_cast<std::size_t>(size_) * static_cast<std::size_t>(size_));
+  gl_->PixelStorei(GL_PACK_ALIGNMENT, 4);
+  gl_->PixelStorei(GL_PACK_ROW_LENGTH, 0);
+  gl_->GetTextureImage(depth_.id(), 0, GL_DEPTH_COMPONENT, GL_FLOAT,
+                       static_cast<GLsizei>(depths.size() * sizeof(float)), depths.data());
+  return depths;
+}
+
 void ShadowMap::bind(const Program& program, const Sun& sun) const {
   gl_->BindTextureUnit(kUnitShadowCompare, depth_.id());
   gl_->BindSampler(kUnitShadowCompare, compare_.id());

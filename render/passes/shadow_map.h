@@ -2,6 +2,7 @@
 
 #include <glm/glm.hpp>
 #include <span>
+#include <vector>
 
 #include "render/gl/objects.h"
 #include "render/gl/program.h"
@@ -33,7 +34,8 @@ class ShadowMap {
   /// Binds the two samplers and sets what shadow.glsl reads.
   void bind(const Program& program, const Sun& sun) const;
   const ShadowProjection& projection() const { return projection_; }
-  GLuint depth_texture() const { return depth_.id(); }
+  /// The depths in memory, rows of size() values.
+  std::vector<float> read() const;
   int size() const { return size_; }
 
  private:

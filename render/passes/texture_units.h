@@ -24,6 +24,7 @@ enum TextureUnit : unsigned {
   kUnitSheenColor = 17,
   kUnitSheenRoughness = 18,
   kUnitBaked = 19,
+  kUnitEnvironment = 20,
 };
 
 }  // namespace planecast::render

@@ -90,11 +90,13 @@ const std::vector<Case> kSamples = {
     {"VertexColorTest/VertexColorTest.glb"},
 };
 
-render::RendererOptions renderer_options(render::ContextKind kind = render::ContextKind::kOsMesa) {
+render::RendererOptions renderer_options(bool only_opengl,
+                                         render::ContextKind kind = render::ContextKind::kOsMesa) {
   render::RendererOptions options;
   options.context = kind;
   options.shader_dir = (kRoot / "assets/shaders").string();
   options.portable_floats = true;
+  options.only_opengl = only_opengl;
   return options;
 }
 
@@ -198,7 +200,7 @@ fs::path sample_folder() {
 }
 
 TEST(GoldenModels, OwnModelsLookAsCommitted) {
-  render::Renderer renderer(renderer_options());
+  render::Renderer renderer(renderer_options(true));
   for (const Case& c : kOwn) {
     SCOPED_TRACE(c.name());
     const cv::Mat actual = over_grey(draw(renderer, kRoot / c.file, c));
@@ -225,7 +227,7 @@ TEST(GoldenModels, SampleModelsHaveTheirFingerprints) {
   }
   std::ofstream out;
   if (updating()) out.open(list);
-  render::Renderer renderer(renderer_options());
+  render::Renderer renderer(renderer_options(true));
   for (const Case& c : kSamples) {
     SCOPED_TRACE(c.name());
     const std::string print = fingerprint_of(draw(renderer, sample_folder() / c.file, c));
@@ -245,7 +247,7 @@ TEST(GoldenModels, SameBytesInASecondRunOnTwoThreadsAndOnBothContexts) {
       {"test/golden/models/skin.gltf", 0, 0.5F},
   };
   const auto hashes = [&](render::ContextKind kind, bool backwards) {
-    render::Renderer renderer(renderer_options(kind));
+    render::Renderer renderer(renderer_options(false, kind));
     std::vector<std::string> result(cases.size());
     for (std::size_t k = 0; k < cases.size(); ++k) {
       const std::size_t i = backwards ? cases.size() - 1 - k : k;

@@ -1,6 +1,8 @@
+// Usage: bench_render [WAY]... [IMAGE]; ways are simplified, as-is and opengl, by default all.
+//
 // Milliseconds a frame of an object layer with its composite, against one ORB extraction in the
-// same run on the same machine, and where the time goes. Two renderers on two threads share the
-// frames.
+// same run on the same machine, and where the time goes. With two threads, two renderers share the
+// frames. On a machine that does other things too, processor time says what wall time cannot.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -11,6 +13,7 @@
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -21,7 +24,10 @@
 namespace planecast::bench {
 namespace {
 
-constexpr int kFrames = 100;
+/// Frames and extractions take turns, so that whatever else the machine does meets both.
+constexpr int kRounds = 5;
+constexpr int kFramesPerRound = 20;
+constexpr int kExtractionsPerRound = 7;
 constexpr int kWarmUp = 4;
 
 double now_ms() {
@@ -49,34 +55,54 @@ cv::Mat procedural_frame() {
   return frame + noise;
 }
 
-cv::Mat test_frame(int argc, char** argv) {
-  const cv::Mat given = argc > 1 ? cv::imread(argv[1]) : cv::Mat();
+cv::Mat test_frame(const std::string& path) {
+  const cv::Mat given = path.empty() ? cv::Mat() : cv::imread(path);
   if (given.empty()) return procedural_frame();
   cv::Mat frame;
   cv::resize(given, frame, cv::Size(640, 480));
   return frame;
 }
 
-double orb_ms(const cv::Mat& frame) {
+struct Cost {
+  double wall_ms = 0.0;
+  double cpu_ms = 0.0;  ///< of all threads
+};
+
+double median(std::vector<double> values) {
+  std::ranges::sort(values);
+  return values[values.size() / 2];
+}
+
+/// What the figures are compared with: one thread, 1000 features.
+Cost orb_cost(const cv::Mat& frame) {
   cv::Mat grey;
   cv::cvtColor(frame, grey, cv::COLOR_BGR2GRAY);
   const auto orb = cv::ORB::create(1000);
-  std::vector<double> times;
-  for (int i = 0; i < 25; ++i) {
+  std::vector<double> wall;
+  std::vector<double> cpu;
+  for (int i = 0; i < kExtractionsPerRound; ++i) {
     std::vector<cv::KeyPoint> keypoints;
     cv::Mat descriptors;
     const double begin = now_ms();
+    const double cpu_begin = cpu_ms();
     orb->detectAndCompute(grey, cv::noArray(), keypoints, descriptors);
-    times.push_back(now_ms() - begin);
+    wall.push_back(now_ms() - begin);
+    cpu.push_back(cpu_ms() - cpu_begin);
   }
-  std::ranges::sort(times);
-  return times[times.size() / 2];
+  return {median(wall), median(cpu)};
 }
 
-render::RendererOptions options_for(bool simplify) {
+struct Way {
+  const char* name;
+  bool simplify = true;
+  bool only_opengl = false;
+};
+
+render::RendererOptions options_for(const Way& way) {
   render::RendererOptions options;
   options.shader_dir = std::string(PLANECAST_SOURCE_DIR) + "/assets/shaders";
-  if (!simplify) options.simplify_px = 0.0F;
+  options.only_opengl = way.only_opengl;
+  if (!way.simplify) options.simplify_px = 0.0F;
   return options;
 }
 
@@ -87,43 +113,56 @@ void draw(render::Renderer& renderer, const render::LayerScene& scene, int frame
   engine::composite(engine::view_layer(layer), picture);
 }
 
-struct Throughput {
-  double wall_ms = 0.0;  ///< a frame
-  double cpu_ms = 0.0;
-};
+/// Draws consecutive frames, shared among threads that each have a renderer of their own.
+class Frames {
+ public:
+  Frames(const render::LayerScene& scene, const cv::Mat& video, const Way& way, int threads)
+      : scene_(&scene), video_(&video), way_(way), renderers_(static_cast<std::size_t>(threads)) {
+    draw_next(kWarmUp * threads);
+  }
 
-Throughput measure(const render::LayerScene& scene, const cv::Mat& video, bool simplify,
-                   int threads) {
-  std::vector<std::unique_ptr<render::Renderer>> renderers(static_cast<std::size_t>(threads));
-  const auto run = [&](int thread, int first, int last) {
-    auto& renderer = renderers[static_cast<std::size_t>(thread)];
-    if (!renderer) renderer = std::make_unique<render::Renderer>(options_for(simplify));
-    cv::Mat picture;
-    for (int i = first + thread; i < last; i += threads) draw(*renderer, scene, i, video, picture);
-  };
-  const auto run_all = [&](int first, int last) {
+  /// The mean of the next frames.
+  Cost draw_next(int count) {
+    const double begin = now_ms();
+    const double cpu = cpu_ms();
     std::vector<std::thread> workers;
-    for (int t = 0; t < threads; ++t) workers.emplace_back(run, t, first, last);
+    for (std::size_t t = 0; t < renderers_.size(); ++t) {
+      workers.emplace_back([this, t, count] { work(t, count); });
+    }
     for (std::thread& worker : workers) worker.join();
-  };
-  run_all(0, kWarmUp * threads);
-  const double begin = now_ms();
-  const double cpu = cpu_ms();
-  run_all(0, kFrames);
-  return {(now_ms() - begin) / kFrames, (cpu_ms() - cpu) / kFrames};
-}
+    next_ += count;
+    return {(now_ms() - begin) / count, (cpu_ms() - cpu) / count};
+  }
+
+ private:
+  void work(std::size_t thread, int count) {
+    auto& renderer = renderers_[thread];
+    if (!renderer) renderer = std::make_unique<render::Renderer>(options_for(way_));
+    cv::Mat picture;
+    const int step = static_cast<int>(renderers_.size());
+    for (int i = next_ + static_cast<int>(thread); i < next_ + count; i += step) {
+      draw(*renderer, *scene_, i, *video_, picture);
+    }
+  }
+
+  const render::LayerScene* scene_;
+  const cv::Mat* video_;
+  Way way_;
+  std::vector<std::unique_ptr<render::Renderer>> renderers_;
+  int next_ = 0;
+};
 
 double covered_share(render::LayerScene scene) {
   scene.with_depth = true;
-  render::Renderer renderer(options_for(true));
+  render::Renderer renderer(options_for({}));
   const render::Layer layer = renderer.draw_layer(scene, camera_at(0));
   const auto covered =
       std::ranges::count_if(layer.depth.pixels, [](float depth) { return depth > 0.0F; });
   return static_cast<double>(covered) / static_cast<double>(layer.depth.pixels.size());
 }
 
-void report_passes(const render::LayerScene& scene, const cv::Mat& video, bool simplify) {
-  render::RendererOptions options = options_for(simplify);
+void report_passes(const render::LayerScene& scene, const cv::Mat& video, const Way& way) {
+  render::RendererOptions options = options_for(way);
   options.time_passes = true;
   render::Renderer renderer(options);
   cv::Mat picture;
@@ -144,23 +183,50 @@ void report_passes(const render::LayerScene& scene, const cv::Mat& video, bool s
   std::printf("    %-20s %6.2f ms\n", "composite", composite_ms / kTimed);
 }
 
-int run(int argc, char** argv) {
+void report(const render::LayerScene& scene, const cv::Mat& video, const Way& way) {
+  for (const int threads : {1, 2}) {
+    Frames frames(scene, video, way, threads);
+    std::vector<double> frame_ms, frame_cpu, orb_ms, orb_cpu, by_time, by_cpu;
+    for (int round = 0; round < kRounds; ++round) {
+      const Cost orb = orb_cost(video);
+      const Cost frame = frames.draw_next(kFramesPerRound);
+      frame_ms.push_back(frame.wall_ms);
+      frame_cpu.push_back(frame.cpu_ms);
+      orb_ms.push_back(orb.wall_ms);
+      orb_cpu.push_back(orb.cpu_ms);
+      by_time.push_back(frame.wall_ms / orb.wall_ms);
+      by_cpu.push_back(frame.cpu_ms / threads / orb.cpu_ms);
+    }
+    std::printf(
+        "  %-10s %d threads  %6.2f ms a frame, cpu %6.2f; ORB %5.2f ms, cpu %5.2f; "
+        "ratio %5.2f, by cpu on %d idle cores %5.2f\n",
+        way.name, threads, median(frame_ms), median(frame_cpu), median(orb_ms), median(orb_cpu),
+        median(by_time), threads, median(by_cpu));
+  }
+  report_passes(scene, video, way);
+}
+
+int run(const std::vector<std::string>& arguments) {
   cv::setNumThreads(1);
-  const cv::Mat video = test_frame(argc, argv);
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
+  const std::vector<Way> known = {
+      {"simplified", true, false}, {"as-is", false, false}, {"opengl", true, true}};
+  std::vector<Way> ways;
+  std::string image;
+  for (const std::string& argument : arguments) {
+    const auto way = std::ranges::find_if(known, [&](const Way& w) { return argument == w.name; });
+    if (way == known.end()) {
+      image = argument;
+    } else {
+      ways.push_back(*way);
+    }
+  }
+  const cv::Mat video = test_frame(image);
   for (const int triangles : {20000, 100000}) {
     const render::LayerScene scene = table_scene(bumpy_ball(triangles));
     std::printf("%d triangles, covering %.1f %% of 640x480\n", triangles,
                 100.0 * covered_share(scene));
-    for (const bool simplify : {true, false}) {
-      for (const int threads : {1, 2}) {
-        const double orb = orb_ms(video);
-        const Throughput found = measure(scene, video, simplify, threads);
-        std::printf("  %-12s %d threads  %6.2f ms a frame (cpu %6.2f)  ORB %6.2f ms  ratio %.2f\n",
-                    simplify ? "simplified" : "as it is", threads, found.wall_ms, found.cpu_ms, orb,
-                    found.wall_ms / orb);
-      }
-      report_passes(scene, video, simplify);
-    }
+    for (const Way& way : ways.empty() ? known : ways) report(scene, video, way);
   }
   return 0;
 }
@@ -168,4 +234,4 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace planecast::bench
 
-int main(int argc, char** argv) { return planecast::bench::run(argc, argv); }
+int main(int argc, char** argv) { return planecast::bench::run({argv + 1, argv + argc}); }

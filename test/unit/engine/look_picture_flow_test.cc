@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
+#include "engine/pipeline/painting_threads.h"
 #include "engine/user_error.h"
 
 namespace planecast::engine {
@@ -88,6 +92,54 @@ TEST_P(PictureFlow, FailuresOfWritingArriveAtTheLatestAtTheEnd) {
     writer.finish();
   };
   EXPECT_THROW(write_all(), UserError);
+}
+
+/// Three painting threads, or the caller's own.
+TEST_P(PictureFlow, FramesArePaintedInOrderWhoeverPaintsThem) {
+  std::atomic<int> made = 0;
+  const auto make = [&made]() -> PaintingThreads::Paint {
+    ++made;
+    return [](const ReadFrame& frame) {
+      // The first of each three is the slowest.
+      std::this_thread::sleep_for(std::chrono::milliseconds(frame.index % 3 == 0 ? 5 : 0));
+      PaintedFrame painted;
+      painted.index = frame.index;
+      return painted;
+    };
+  };
+  const int threads = GetParam() ? 3 : 1;
+  PaintingThreads painters(make, threads);
+  int next = 0;
+  int taken = 0;
+  while (taken < 20) {
+    for (; next < 20 && !painters.full(); ++next) {
+      ReadFrame frame;
+      frame.index = next;
+      painters.put(std::move(frame));
+    }
+    EXPECT_EQ(painters.take().index, taken++);
+  }
+  EXPECT_TRUE(painters.empty());
+  EXPECT_EQ(made.load(), threads);
+}
+
+TEST_P(PictureFlow, FailuresOfPaintingArriveWithTheirFrame) {
+  const auto make = []() -> PaintingThreads::Paint {
+    return [](const ReadFrame& frame) -> PaintedFrame {
+      if (frame.index == 1) throw UserError("no more paint");
+      return {};
+    };
+  };
+  const auto paint_two = [&] {
+    PaintingThreads painters(make, GetParam() ? 2 : 1);
+    for (int i = 0; i < 2; ++i) {
+      ReadFrame frame;
+      frame.index = i;
+      painters.put(std::move(frame));
+      painters.take();
+    }
+  };
+  EXPECT_THROW(paint_two(), UserError);
 }
 
 INSTANTIATE_TEST_SUITE_P(Threads, PictureFlow, ::testing::Bool());
