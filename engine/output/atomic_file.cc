@@ -70,6 +70,9 @@ std::string read_file(const fs::path& path) {
   if (fs::is_directory(path, error)) {
     throw UserError(fmt::format("{}: is a folder, not a file", path.string()));
   }
+  if (fs::exists(path, error) && !fs::is_regular_file(path, error)) {
+    throw UserError(fmt::format("{}: not a file", path.string()));
+  }
   const File file(std::fopen(path.c_str(), "rb"));
   if (!file) throw UserError(fmt::format("{}: {}", path.string(), std::strerror(errno)));
   std::string bytes;

@@ -1,7 +1,5 @@
 #include "engine/scene/scene_file.h"
 
-#include <yaml-cpp/yaml.h>
-
 #include <algorithm>
 #include <set>
 

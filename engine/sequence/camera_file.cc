@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -73,11 +72,7 @@ constexpr double kMaxAspectDifference = 0.01;
 
 /// The text without a byte order mark and OpenCV's "%YAML:1.0", which is not a YAML directive.
 std::string read_yaml_text(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) fail(file, "cannot be opened");
-  std::ostringstream text;
-  text << in.rdbuf();
-  std::string yaml = text.str();
+  std::string yaml = read_file(file);
   if (yaml.starts_with("\xEF\xBB\xBF")) yaml.erase(0, 3);
   if (yaml.starts_with("%YAML")) yaml.erase(0, std::min(yaml.find('\n'), yaml.size()));
   return yaml;
@@ -206,8 +201,8 @@ CameraSettings parse_euroc(const fs::path& file, const YAML::Node& root) {
   if (root["resolution"]) {
     const std::vector<double> size = numbers(file, root["resolution"], "resolution");
     if (size.size() != 2) fail(file, "'resolution' must have 2 values");
-    camera.width = static_cast<int>(size[0]);
-    camera.height = static_cast<int>(size[1]);
+    camera.width = whole_number(file, root["resolution"][0], "resolution");
+    camera.height = whole_number(file, root["resolution"][1], "resolution");
   }
   if (root["distortion_coefficients"]) {
     set_distortion(file, numbers(file, root["distortion_coefficients"], "distortion_coefficients"),

@@ -9,15 +9,15 @@
 
 namespace planecast::engine {
 
-FrameSetup set_up_frames(const SequenceOptions& options,
+FrameSetup set_up_frames(const std::filesystem::path& path, const SequenceOptions& options,
                          const std::filesystem::path& found_camera_file, cv::Size image_size,
                          std::vector<std::string>& warnings) {
   FrameSetup setup;
   setup.input_size = image_size;
   setup.output_size = options.size.value_or(image_size);
   if (setup.output_size.width < 16 || setup.output_size.height < 16) {
-    throw UserError(fmt::format("{}x{}: frames must be at least 16 pixels a side",
-                                setup.output_size.width, setup.output_size.height));
+    throw UserError(fmt::format("{}: {}x{} pixels, but frames must have at least 16 a side",
+                                path.string(), setup.output_size.width, setup.output_size.height));
   }
   const std::string name = options.camera.empty() ? found_camera_file.string() : options.camera;
   if (name.empty()) {

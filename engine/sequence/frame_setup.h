@@ -18,7 +18,8 @@ struct FrameSetup {
 };
 
 /// The user's camera, else `found_camera_file`, else a guess with a warning; scaled to the frames.
-FrameSetup set_up_frames(const SequenceOptions& options,
+/// `path` names the input in messages.
+FrameSetup set_up_frames(const std::filesystem::path& path, const SequenceOptions& options,
                          const std::filesystem::path& found_camera_file, cv::Size image_size,
                          std::vector<std::string>& warnings);
 

@@ -65,7 +65,22 @@ std::uint32_t crc32(const std::uint8_t* data, std::size_t size) {
 
 bool is_critical(const Bytes& bytes, std::size_t chunk) { return (bytes[chunk + 4] & 0x20) == 0; }
 
+/// Whether so many bytes of compressed data can hold the picture at all. The decoder would make
+/// room for it first, and complain on stderr.
+bool png_data_suffices(const Bytes& bytes, std::size_t header, std::uint64_t data_bytes) {
+  constexpr std::uint64_t kMostOfDeflate = 1032;
+  constexpr std::array<std::uint64_t, 7> kChannels = {1, 0, 3, 1, 2, 0, 4};
+  const std::uint64_t width = big_endian(bytes, header, 4);
+  const std::uint64_t height = big_endian(bytes, header + 4, 4);
+  const std::uint64_t bits = bytes[header + 8];
+  const std::size_t color = bytes[header + 9];
+  if (color >= kChannels.size() || bits > 16) return false;
+  return data_bytes * kMostOfDeflate >= (width * bits * kChannels[color] + 7) / 8 * height;
+}
+
 ImageCheck check_png(const Bytes& bytes) {
+  std::size_t header_at = 0;
+  std::uint64_t data_bytes = 0;
   ImageCheck check{.known = true, .width = 0, .height = 0, .damage = kCutOff};
   std::size_t at = kPngSignature.size();
   while (at + 12 <= bytes.size()) {
@@ -76,12 +91,21 @@ ImageCheck check_png(const Bytes& bytes) {
       check.damage = kDamaged;
       return check;
     }
-    if (std::memcmp(&bytes[at + 4], "IHDR", 4) == 0 && length >= 8) {
+    const bool header = std::memcmp(&bytes[at + 4], "IHDR", 4) == 0;
+    if (header != (at == kPngSignature.size())) {  // first, and once
+      check.damage = kDamaged;
+      return check;
+    }
+    if (header && length == 13) {
+      header_at = at + 8;
       check.width = static_cast<int>(std::min(big_endian(bytes, at + 8, 4), 0x7FFFFFFFU));
       check.height = static_cast<int>(std::min(big_endian(bytes, at + 12, 4), 0x7FFFFFFFU));
     }
+    if (std::memcmp(&bytes[at + 4], "IDAT", 4) == 0) data_bytes += length;
     if (std::memcmp(&bytes[at + 4], "IEND", 4) == 0) {
-      check.damage = check.width > 0 && check.height > 0 ? "" : kDamaged;
+      const bool whole =
+          check.width > 0 && check.height > 0 && png_data_suffices(bytes, header_at, data_bytes);
+      check.damage = whole ? "" : kDamaged;
       return check;
     }
     at += length + 12;
@@ -129,8 +153,8 @@ ImageCheck check_jpeg(const Bytes& bytes) {
     }
     if (length > bytes.size() - at - 2) return check;
     if (is_start_of_frame(marker) && length >= 8) {
-      check.height = static_cast<int>(big_endian(bytes, at + 5, 2));
-      check.width = static_cast<int>(big_endian(bytes, at + 7, 2));
+      check.height = std::max(check.height, static_cast<int>(big_endian(bytes, at + 5, 2)));
+      check.width = std::max(check.width, static_cast<int>(big_endian(bytes, at + 7, 2)));
     }
     at += 2 + length;
     if (marker == 0xDA) at = skip_scan_data(bytes, at);
@@ -159,6 +183,57 @@ ImageCheck check_bmp(const Bytes& bytes) {
   return check;
 }
 
+/// A TIFF's numbers are of the byte order that its first two bytes tell.
+class TiffReader {
+ public:
+  explicit TiffReader(const Bytes& bytes) : bytes_(bytes), big_(bytes[0] == 'M') {}
+
+  bool has(std::size_t at, std::size_t count) const {
+    return at <= bytes_.size() && count <= bytes_.size() - at;
+  }
+  std::uint32_t number(std::size_t at, int count) const {
+    return big_ ? big_endian(bytes_, at, count) : little_endian(bytes_, at, count);
+  }
+  /// The value of a directory's entry, where it is one short or long.
+  std::uint32_t value(std::size_t entry) const {
+    constexpr std::uint32_t kShort = 3;
+    return number(entry + 8, number(entry + 2, 2) == kShort ? 2 : 4);
+  }
+
+ private:
+  const Bytes& bytes_;
+  bool big_;
+};
+
+ImageCheck check_tiff(const Bytes& bytes) {
+  constexpr std::uint32_t kWidth = 256;
+  constexpr std::uint32_t kHeight = 257;
+  constexpr int kMostDirectories = 64;
+  ImageCheck check{.known = true, .width = 0, .height = 0, .damage = kCutOff};
+  const TiffReader tiff(bytes);
+  if (!tiff.has(0, 8)) return check;
+  std::size_t at = tiff.number(4, 4);
+  for (int i = 0; i < kMostDirectories && at != 0; ++i) {
+    if (!tiff.has(at, 2)) return check;
+    const std::size_t entries = tiff.number(at, 2);
+    if (!tiff.has(at, 2 + 12 * entries + 4)) return check;
+    for (std::size_t entry = at + 2; entry < at + 2 + 12 * entries; entry += 12) {
+      const std::uint32_t tag = tiff.number(entry, 2);
+      const auto value = static_cast<int>(std::min(tiff.value(entry), 0x7FFFFFFFU));
+      if (tag == kWidth) check.width = std::max(check.width, value);
+      if (tag == kHeight) check.height = std::max(check.height, value);
+    }
+    at = tiff.number(at + 2 + 12 * entries, 4);
+  }
+  check.damage = check.width > 0 && check.height > 0 ? "" : kDamaged;
+  return check;
+}
+
+bool is_tiff(const Bytes& bytes) {
+  return bytes.size() >= 4 &&
+         (std::memcmp(bytes.data(), "II*\0", 4) == 0 || std::memcmp(bytes.data(), "MM\0*", 4) == 0);
+}
+
 }  // namespace
 
 ImageCheck check_image_file(const std::vector<std::uint8_t>& bytes) {
@@ -171,6 +246,7 @@ ImageCheck check_image_file(const std::vector<std::uint8_t>& bytes) {
     return check_jpeg(bytes);
   }
   if (bytes.size() >= 2 && bytes[0] == 'B' && bytes[1] == 'M') return check_bmp(bytes);
+  if (is_tiff(bytes)) return check_tiff(bytes);
   return {};
 }
 

@@ -31,7 +31,11 @@ std::vector<std::uint8_t> read_bytes(const fs::path& file) {
   if (!fs::is_regular_file(file, error)) throw UserError(file.string() + ": not a file");
   std::ifstream in(file, std::ios::binary);
   if (!in) throw UserError(file.string() + ": cannot be opened");
-  std::vector<std::uint8_t> bytes(fs::file_size(file, error));
+  const std::uintmax_t size = fs::file_size(file, error);
+  if (error || size > kMaxImageBytes) {
+    throw UserError(file.string() + ": the file is too large for a picture");
+  }
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
   in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<std::size_t>(in.gcount()));
   return bytes;
@@ -40,10 +44,9 @@ std::vector<std::uint8_t> read_bytes(const fs::path& file) {
 cv::Mat decode(const fs::path& file, int flags) {
   const std::vector<std::uint8_t> bytes = read_bytes(file);
   const ImageCheck check = check_image_file(bytes);
-  if (std::max(check.width, check.height) > kMaxImageSide) {
-    throw UserError(fmt::format("{}: {}x{} pixels are more than {} a side", file.string(),
-                                check.width, check.height, kMaxImageSide));
-  }
+  // The decoders would take any kind by its content, some without a bound of its size.
+  if (!check.known) throw UserError(file.string() + ": is no PNG, JPEG, BMP or TIFF picture");
+  check_image_size(file, check.width, check.height);
   if (!check.damage.empty()) throw UserError(fmt::format("{}: {}", file.string(), check.damage));
   cv::Mat image;
   try {
@@ -52,16 +55,24 @@ cv::Mat decode(const fs::path& file, int flags) {
     image.release();
   }
   if (image.empty()) throw UserError(file.string() + ": cannot be decoded as an image");
-  if (std::max(image.cols, image.rows) > kMaxImageSide) {
-    throw UserError(fmt::format("{}: {}x{} pixels are more than {} a side", file.string(),
-                                image.cols, image.rows, kMaxImageSide));
-  }
+  check_image_size(file, image.cols, image.rows);
   return image;
 }
 
 void no_message(void*, int, const char*, va_list) {}
 
 }  // namespace
+
+void check_image_size(const fs::path& file, int width, int height) {
+  if (std::max(width, height) > kMaxImageSide) {
+    throw UserError(fmt::format("{}: {}x{} pixels are more than {} a side", file.string(), width,
+                                height, kMaxImageSide));
+  }
+  if (static_cast<long long>(width) * height > kMaxImagePixels) {
+    throw UserError(fmt::format("{}: {}x{} pixels are more than {}", file.string(), width, height,
+                                kMaxImagePixels));
+  }
+}
 
 bool has_image_suffix(const fs::path& file) {
   std::string suffix = file.extension().string();

@@ -41,7 +41,8 @@ class ImageListSequence : public Sequence {
   ImageListSequence(ImageList list, const SequenceOptions& options)
       : list_(std::move(list)),
         range_(select_frames(options, static_cast<int>(list_.frames.size()), list_.path)),
-        setup_(set_up_frames(options, list_.camera_file, first_image_size(), list_.warnings)) {
+        setup_(set_up_frames(list_.path, options, list_.camera_file, first_image_size(),
+                             list_.warnings)) {
     const double given_fps = setup_.settings.fps.value_or(kDefaultFps);
     if (!list_.has_timestamps) {
       for (FrameFiles& frame : list_.frames) {

@@ -47,6 +47,21 @@ int attach(const fs::path& list, std::vector<FrameFiles>& frames, fs::path Frame
   return pairs;
 }
 
+/// In the order of time, whatever the list's; `file` named the frames.
+void sort_by_time(const fs::path& file, std::vector<FrameFiles>& frames) {
+  if (frames.empty()) throw UserError(file.string() + ": lists no images");
+  std::stable_sort(frames.begin(), frames.end(), [](const FrameFiles& a, const FrameFiles& b) {
+    return a.timestamp < b.timestamp;
+  });
+  const auto twice = std::adjacent_find(
+      frames.begin(), frames.end(),
+      [](const FrameFiles& a, const FrameFiles& b) { return a.timestamp == b.timestamp; });
+  if (twice != frames.end()) {
+    throw UserError(
+        fmt::format("{}: the timestamp {} is there twice", file.string(), twice->timestamp));
+  }
+}
+
 ImageList list_tum(const fs::path& folder) {
   ImageList list;
   list.path = folder;
@@ -85,7 +100,7 @@ ImageList list_associations(const fs::path& folder) {
     frame.depth = folder / line.fields[depth_first ? 1 : 3];
     list.frames.push_back(frame);
   }
-  if (list.frames.empty()) throw UserError(file.string() + ": lists no images");
+  sort_by_time(file, list.frames);
   // ICL-NUIM numbers its frames instead of timing them.
   const bool numbered =
       list.frames.size() > 1 && list.frames[1].timestamp - list.frames[0].timestamp >= 1.0;
@@ -111,7 +126,7 @@ ImageList list_euroc(const fs::path& folder, const fs::path& camera_folder) {
     list.frames.push_back(
         {*nanoseconds * 1e-9, camera_folder / "data" / text.substr(comma + 1), {}, {}});
   }
-  if (list.frames.empty()) throw UserError(file.string() + ": lists no images");
+  sort_by_time(file, list.frames);
   if (fs::exists(camera_folder / "sensor.yaml")) list.camera_file = camera_folder / "sensor.yaml";
   return list;
 }

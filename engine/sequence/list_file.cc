@@ -16,8 +16,10 @@ namespace planecast::engine {
 namespace fs = std::filesystem;
 
 std::vector<ListLine> read_list_lines(const fs::path& file) {
-  std::ifstream in(file);
-  if (!in || fs::is_directory(file)) throw UserError(file.string() + ": cannot be opened");
+  std::error_code ignored;
+  std::ifstream in;
+  if (fs::is_regular_file(file, ignored)) in.open(file);
+  if (!in.is_open()) throw UserError(file.string() + ": cannot be opened");
   std::vector<ListLine> lines;
   std::string text;
   for (int number = 1; std::getline(in, text); ++number) {

@@ -6,6 +6,7 @@
 #include <opencv2/videoio.hpp>
 #include <utility>
 
+#include "engine/cancel.h"
 #include "engine/sequence/frame_setup.h"
 #include "engine/sequence/image_file.h"
 #include "engine/user_error.h"
@@ -23,6 +24,9 @@ constexpr double kDefaultFps = 30.0;
 
 cv::VideoCapture open_capture(const fs::path& path) {
   // Absolute, so that FFmpeg never takes "a:b.mp4" for a protocol.
+  // A pipe or a device may keep its reader waiting for ever, and cannot be read twice.
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) throw UserError(path.string() + ": not a file");
   cv::VideoCapture capture;
   try {
     capture.open(fs::absolute(path).string(), cv::CAP_FFMPEG);
@@ -30,12 +34,8 @@ cv::VideoCapture open_capture(const fs::path& path) {
     capture.release();
   }
   if (!capture.isOpened()) throw UserError(path.string() + ": not a video that FFmpeg can read");
-  const double width = capture.get(cv::CAP_PROP_FRAME_WIDTH);
-  const double height = capture.get(cv::CAP_PROP_FRAME_HEIGHT);
-  if (std::max(width, height) > kMaxImageSide) {
-    throw UserError(fmt::format("{}: {}x{} pixels are more than {} a side", path.string(), width,
-                                height, kMaxImageSide));
-  }
+  check_image_size(path, static_cast<int>(capture.get(cv::CAP_PROP_FRAME_WIDTH)),
+                   static_cast<int>(capture.get(cv::CAP_PROP_FRAME_HEIGHT)));
   return capture;
 }
 
@@ -58,7 +58,10 @@ VideoFacts survey(const fs::path& path, int stop_after) {
   }
   facts.size = first.size();
   facts.frames = 1;
-  while ((stop_after < 0 || facts.frames < stop_after) && capture.grab()) ++facts.frames;
+  while ((stop_after < 0 || facts.frames < stop_after) && capture.grab()) {
+    throw_if_cancelled();
+    ++facts.frames;
+  }
   const bool to_the_end = stop_after < 0 || facts.frames < stop_after;
   // Containers are often wrong by a frame or two.
   if (to_the_end && promised < 1e9 && facts.frames < 0.98 * promised - 2) {
@@ -74,7 +77,7 @@ class VideoSequence : public Sequence {
       : path_(std::move(path)),
         facts_(std::move(facts)),
         range_(select_frames(options, facts_.frames, path_)),
-        setup_(set_up_frames(options, {}, facts_.size, facts_.warnings)) {}
+        setup_(set_up_frames(path_, options, {}, facts_.size, facts_.warnings)) {}
 
   int first_frame() const override { return range_.first; }
   int end_frame() const override { return range_.end; }

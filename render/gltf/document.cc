@@ -75,6 +75,26 @@ Chunks split(const Bytes& file) {
   return chunks;
 }
 
+/// The JSON library writes and frees what is nested by recursion.
+void check_depth(std::string_view text) {
+  constexpr int kDeepest = 256;
+  int depth = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted) {
+      if (c == '\\') ++i;
+      if (c == '"') quoted = false;
+    } else if (c == '"') {
+      quoted = true;
+    } else if (c == '[' || c == '{') {
+      if (++depth > kDeepest) throw ImportError("is nested too deeply");
+    } else if (c == ']' || c == '}') {
+      --depth;
+    }
+  }
+}
+
 const json& array_of(const json& object, const char* key) {
   static const json kNone = json::array();
   const auto found = object.find(key);
@@ -196,6 +216,7 @@ GltfDocument read_document(const std::string& path, std::vector<std::string>& wa
   if (chunks.json.find_first_not_of(" \t\r\n") == std::string_view::npos) {
     throw ImportError("is not a glTF file");
   }
+  check_depth(chunks.json);
   document.json = json::parse(chunks.json);
   if (!document.json.is_object()) throw ImportError("is not a glTF file");
   // First of all: what an unknown extension leaves out of a file is no error of the file.

@@ -60,6 +60,28 @@ tinygltf::Model parse(GltfDocument& document, std::vector<std::string>& warnings
   return file;
 }
 
+/// What meshes take in memory does not follow from the file's size: accessors may be used again and
+/// again, and those without a buffer view are zeros that cost nothing.
+void check_amount(const tinygltf::Model& file) {
+  constexpr std::size_t kMostElements = std::size_t{1} << 26U;
+  std::size_t total = 0;
+  const auto add = [&](int accessor) {
+    if (accessor < 0 || static_cast<std::size_t>(accessor) >= file.accessors.size()) return;
+    const std::size_t count = file.accessors[static_cast<std::size_t>(accessor)].count;
+    if (count > kMostElements - total) throw ImportError("its meshes have too many vertices");
+    total += count;
+  };
+  for (const auto& mesh : file.meshes) {
+    for (const auto& primitive : mesh.primitives) {
+      add(primitive.indices);
+      for (const auto& [name, accessor] : primitive.attributes) add(accessor);
+      for (const auto& target : primitive.targets) {
+        for (const auto& [name, accessor] : target) add(accessor);
+      }
+    }
+  }
+}
+
 /// Joint numbers beyond their skin would read foreign memory when the mesh is drawn.
 void check_joints(const Model& model) {
   for (const Node& node : model.nodes) {
@@ -90,6 +112,7 @@ void import_images(const GltfDocument& document, Model& model, std::vector<std::
 std::shared_ptr<const Model> convert(const GltfDocument& document, const tinygltf::Model& file,
                                      const ImportOptions& options,
                                      std::vector<std::string>& warnings) {
+  check_amount(file);
   auto model = std::make_shared<Model>();
   import_images(document, *model, warnings);
   import_materials(file, *model, warnings);

@@ -51,12 +51,16 @@ void link_children(const tinygltf::Model& file, Model& model) {
   }
 }
 
-/// With one parent a node, a cycle shows as a chain of parents longer than there are nodes.
+/// With one parent a node, a cycle shows as a way up that comes back to itself. Each node is passed
+/// once: the way up from one that is known to end is not gone again.
 void check_no_cycles(const Model& model) {
-  for (const Node& start : model.nodes) {
-    std::size_t steps = 0;
-    for (int up = start.parent; up >= 0; up = model.nodes[static_cast<std::size_t>(up)].parent) {
-      if (++steps > model.nodes.size()) throw ImportError("the nodes form a cycle");
+  std::vector<int> passed_from(model.nodes.size(), -1);
+  for (int start = 0; start < static_cast<int>(model.nodes.size()); ++start) {
+    for (int up = start; up >= 0; up = model.nodes[static_cast<std::size_t>(up)].parent) {
+      int& from = passed_from[static_cast<std::size_t>(up)];
+      if (from == start) throw ImportError("the nodes form a cycle");
+      if (from >= 0) break;
+      from = start;
     }
   }
 }

@@ -71,7 +71,53 @@ TEST(ImageFile, TruncatedFilesAreNamed) {
   }
   const auto text = folder.write("text.png", "this is no picture");
   EXPECT_EQ(user_error([&text] { read_color_image(text); }),
-            text.string() + ": cannot be decoded as an image");
+            text.string() + ": is no PNG, JPEG, BMP or TIFF picture");
+}
+
+/// Decoders go by the content: what would be taken for another kind is not bounded by our checks.
+TEST(ImageFile, OtherKindsAreRefusedWhateverTheirName) {
+  TestFolder folder;
+  for (const std::string kind : {".ppm", ".webp"}) {
+    std::vector<std::uint8_t> bytes;
+    cv::imencode(kind, test_picture(1), bytes);
+    const auto file = folder.write("named.png", std::string(bytes.begin(), bytes.end()));
+    EXPECT_NE(user_error([&file] { read_color_image(file); }).find("is no PNG"), std::string::npos)
+        << kind;
+  }
+}
+
+TEST(ImageCheck, ATiffIsAsLargeAsItsLargestPage) {
+  const std::vector<cv::Mat> pages = {test_picture(1, 20, 30), test_picture(2, 50, 10)};
+  TestFolder folder;
+  const auto file = folder.path() / "pages.tif";
+  ASSERT_TRUE(cv::imwrite(file.string(), pages));
+  const std::string content = file_bytes(file);
+  const std::vector<std::uint8_t> bytes(content.begin(), content.end());
+  const ImageCheck check = check_image_file(bytes);
+  EXPECT_TRUE(check.known);
+  EXPECT_EQ(check.damage, "");
+  EXPECT_EQ(check.width, 50);
+  EXPECT_EQ(check.height, 30);
+  for (std::size_t size = 4; size < bytes.size(); ++size) {
+    check_image_file({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)});
+  }
+}
+
+/// A decoder may go by the first header, a check by the last.
+TEST(ImageCheck, APngHasOneHeader) {
+  std::vector<std::uint8_t> bytes = encode(".png");
+  constexpr std::ptrdiff_t kSignature = 8;
+  constexpr std::ptrdiff_t kHeaderChunk = 25;
+  const std::vector<std::uint8_t> header(bytes.begin() + kSignature,
+                                         bytes.begin() + kSignature + kHeaderChunk);
+  bytes.insert(bytes.begin() + kSignature, header.begin(), header.end());
+  EXPECT_NE(check_image_file(bytes).damage, "");
+}
+
+TEST(ImageFile, AsManyPixelsAsFourTimes8K) {
+  EXPECT_EQ(user_error([] { check_image_size("a", 15360, 8640); }), "");
+  EXPECT_NE(user_error([] { check_image_size("a", 16384, 16384); }), "");
+  EXPECT_NE(user_error([] { check_image_size("a", 16385, 1); }), "");
 }
 
 TEST(ImageFile, AForgedHugeHeaderIsRefused) {
