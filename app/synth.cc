@@ -67,6 +67,13 @@ void add_synth(CLI::App& app, Action& action) {
       ->type_name("LENS")
       ->check(CLI::IsMember(engine::synthetic_lens_names()))
       ->capture_default_str();
+  command
+      ->add_option("--trouble", options->synth.trouble,
+                   "What makes the recording hard: motion blur, jumps of exposure, a rolling "
+                   "shutter, something that moves before the camera, frames that are missing")
+      ->type_name("WHAT")
+      ->check(CLI::IsMember(engine::synthetic_trouble_names()))
+      ->capture_default_str();
   command->add_flag("--no-effects", options->no_effects,
                     "No noise, blur, exposure drift or depth holes");
   add_common_options(*command, options->common);

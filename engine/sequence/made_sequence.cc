@@ -39,6 +39,9 @@ std::optional<SynthOptions> read_synth_options(YamlMap& parent) {
   options.seed = static_cast<std::uint64_t>(map.integer("seed").value_or(1));
   options.effects = map.boolean("effects").value_or(options.effects);
   if (const auto lens = map.choice("lens", synthetic_lens_names())) options.lens = *lens;
+  if (const auto trouble = map.choice("trouble", synthetic_trouble_names())) {
+    options.trouble = *trouble;
+  }
   if (map.has("frames") && options.frames < 1) map.fail("frames", "'frames' must be positive");
   map.finish();
   return options;
@@ -55,9 +58,10 @@ std::string folder_name(const std::string& name) {
 
 std::string made_sequence_name(const SynthOptions& synth) {
   return folder_name(
-      fmt::format("{}-{}x{}-{}fps-{}-seed{}{}{}", synth.name, synth.width, synth.height, synth.fps,
-                  synth.frames > 0 ? std::to_string(synth.frames) : "all", synth.seed,
-                  synth.lens == "none" ? "" : "-" + synth.lens, synth.effects ? "" : "-clean"));
+      fmt::format("{}-{}x{}-{}fps-{}-seed{}{}{}{}", synth.name, synth.width, synth.height,
+                  synth.fps, synth.frames > 0 ? std::to_string(synth.frames) : "all", synth.seed,
+                  synth.lens == "none" ? "" : "-" + synth.lens, synth.effects ? "" : "-clean",
+                  synth.trouble == "none" ? "" : "-" + synth.trouble));
 }
 
 }  // namespace planecast::engine

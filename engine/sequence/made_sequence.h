@@ -9,8 +9,8 @@
 namespace planecast::engine {
 
 /// The synthetic sequence that a YAML file asks for under 'synth': a scene's name, or a mapping of
-/// scene, frames, width, height, fps, seed, effects, lens, of which all but the scene may be left
-/// out. Nothing where the key is absent. Throws UserError "file:LINE: reason".
+/// scene, frames, width, height, fps, seed, effects, lens, trouble, of which all but the scene may
+/// be left out. Nothing where the key is absent. Throws UserError "file:LINE: reason".
 std::optional<SynthOptions> read_synth_options(YamlMap& parent);
 
 /// A name as a folder's: other characters than letters, digits and - _ . become -.

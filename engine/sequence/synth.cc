@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "engine/assets.h"
+#include "engine/cancel.h"
 #include "engine/convert.h"
 #include "engine/sequence/camera_file.h"
 #include "engine/sequence/synth/camera_effects.h"
@@ -17,6 +18,7 @@
 #include "engine/sequence/synth/painted_scene.h"
 #include "engine/sequence/synth/random.h"
 #include "engine/sequence/synth/scenes.h"
+#include "engine/sequence/synth/troubles.h"
 #include "engine/sequence/synth/truth_files.h"
 #include "engine/user_error.h"
 #include "render/renderer.h"
@@ -51,6 +53,11 @@ void check(const SynthOptions& options) {
     throw UserError(
         fmt::format("{}: no such synthetic lens ({})", options.lens, fmt::join(lenses, ", ")));
   }
+  const std::vector<std::string> troubles = synth::trouble_names();
+  if (std::find(troubles.begin(), troubles.end(), options.trouble) == troubles.end()) {
+    throw UserError(fmt::format("{}: no such trouble of a recording ({})", options.trouble,
+                                fmt::join(troubles, ", ")));
+  }
   if (!(options.depth_factor > 0.0)) throw UserError("the depth factor must be positive");
 }
 
@@ -60,6 +67,19 @@ synth::Scene scene_named(const SynthOptions& options) {
   throw UserError(fmt::format("{}: no such synthetic scene ({})", options.name,
                               fmt::join(synth::scene_names(), ", ")));
 }
+
+synth::Scene troubled(synth::Scene scene, const synth::Trouble& trouble) {
+  if (trouble.shutter_s > 0.0) scene.effects.shutter_s = trouble.shutter_s;
+  scene.effects.exposure_jumps = trouble.exposure_jumps;
+  return scene;
+}
+
+/// What a camera without faults sees: 8-bit BGR, 8-bit labels, CV_32F metres.
+struct ExactPictures {
+  cv::Mat bgr;
+  cv::Mat mask;
+  cv::Mat depth_m;
+};
 
 /// One frame as it will be written.
 struct FramePictures {
@@ -124,31 +144,29 @@ class Generator {
  public:
   Generator(const SynthOptions& options, synth::Scene scene)
       : options_(options),
-        scene_(std::move(scene)),
+        trouble_(synth::trouble_named(options.trouble)),
+        scene_(troubled(std::move(scene), trouble_)),
         camera_(synthetic_camera(options).camera),
         lens_(camera_),
         renderer_(renderer_options(options)),
         painted_(synth::paint_scene(scene_.model, texture_detail(options))),
         effects_(scene_.effects, options.width, options.height,
-                 synth::named_seed("effects", options.seed)) {}
+                 synth::named_seed("effects", options.seed)),
+        passer_(synth::named_seed("passer", options.seed)) {}
 
   FramePictures draw(int frame, double time_s) {
-    const slam::Pose cam_from_world = scene_.path.world_from_cam(time_s).inverse();
-    const render::OpaqueImages images =
-        renderer_.draw_opaque(painted_, to_render_camera(lens_.drawn_camera(), cam_from_world));
+    ExactPictures exact = trouble_.readout_s > 0.0 ? rolled(time_s) : at_once(time_s);
     FramePictures pictures;
-    pictures.bgr = lens_.warp_colors(bgr_of(images.rgb));
-    pictures.mask = lens_.warp_nearest(
-        mask_of(images.labels, hidden_labels(scene_.path.world_from_cam(time_s))));
-    cv::Mat drawn_depth_m(images.depth.height, images.depth.width, CV_32F);
-    std::copy(images.depth.pixels.begin(), images.depth.pixels.end(), drawn_depth_m.begin<float>());
-    cv::Mat depth_m = lens_.warp_nearest(drawn_depth_m);
-    if (is_covered(scene_, time_s)) {
+    pictures.bgr = exact.bgr;
+    pictures.mask = exact.mask;
+    cv::Mat depth_m = exact.depth_m;
+    if (is_covered(scene_, path_time(time_s))) {
       pictures.bgr = synth::covered_lens(camera_.width, camera_.height, frame, options_.seed);
       pictures.mask.setTo(0);
       depth_m.setTo(0.0F);
     } else if (options_.effects) {
-      effects_.apply(pictures.bgr, frame, time_s, flow_at(scene_.path, camera_, time_s));
+      effects_.apply(pictures.bgr, frame, time_s,
+                     trouble_.speed * flow_at(scene_.path, camera_, path_time(time_s)));
       synth::degrade_depth(depth_m, camera_.fx, frame, synth::named_seed("depth", options_.seed));
     }
     pictures.depth = encode_depth(depth_m, options_.depth_factor);
@@ -156,8 +174,47 @@ class Generator {
   }
 
   const synth::Scene& scene() const { return scene_; }
+  slam::Pose world_from_cam(double time_s) const {
+    return scene_.path.world_from_cam(path_time(time_s));
+  }
+  double duration_s() const { return scene_.path.duration_s() / trouble_.speed; }
+  bool is_dropped(int frame, double time_s) const {
+    return synth::is_dropped(trouble_, frame, time_s, synth::named_seed("dropped", options_.seed));
+  }
 
  private:
+  double path_time(double time_s) const { return trouble_.speed * time_s; }
+  /// As a global shutter sees it.
+  ExactPictures at_once(double time_s) {
+    const slam::Pose world_from_camera = world_from_cam(time_s);
+    const slam::Pose cam_from_world = world_from_camera.inverse();
+    const render::OpaqueImages images =
+        renderer_.draw_opaque(painted_, to_render_camera(lens_.drawn_camera(), cam_from_world));
+    cv::Mat bgr = bgr_of(images.rgb);
+    cv::Mat mask = mask_of(images.labels, hidden_labels(world_from_camera));
+    cv::Mat depth_m(images.depth.height, images.depth.width, CV_32F);
+    std::copy(images.depth.pixels.begin(), images.depth.pixels.end(), depth_m.begin<float>());
+    if (trouble_.passer) {
+      passer_.draw(scene_.path, lens_.drawn_camera(), time_s, bgr, mask, depth_m);
+    }
+    return {lens_.warp_colors(bgr), lens_.warp_nearest(mask), lens_.warp_nearest(depth_m)};
+  }
+  /// Rows from one time after the other, the middle one's at `time_s`, in bands within which the
+  /// picture moves by a fraction of a pixel.
+  ExactPictures rolled(double time_s) {
+    constexpr int kBands = 12;
+    ExactPictures rolled;
+    for (int band = 0; band < kBands; ++band) {
+      const double share = (band + 0.5) / kBands - 0.5;
+      const ExactPictures now = at_once(time_s + share * trouble_.readout_s);
+      if (band == 0) rolled = {now.bgr.clone(), now.mask.clone(), now.depth_m.clone()};
+      const cv::Range rows(band * now.bgr.rows / kBands, (band + 1) * now.bgr.rows / kBands);
+      now.bgr.rowRange(rows).copyTo(rolled.bgr.rowRange(rows));
+      now.mask.rowRange(rows).copyTo(rolled.mask.rowRange(rows));
+      now.depth_m.rowRange(rows).copyTo(rolled.depth_m.rowRange(rows));
+    }
+    return rolled;
+  }
   /// By label, whether its plane shows the camera its back.
   std::vector<char> hidden_labels(const slam::Pose& world_from_cam) const {
     std::vector<char> hidden(scene_.model.planes.size() + 1, 0);
@@ -179,12 +236,14 @@ class Generator {
   }
 
   const SynthOptions& options_;
+  synth::Trouble trouble_;
   synth::Scene scene_;
   slam::Camera camera_;
   synth::LensWarp lens_;
   render::Renderer renderer_;
   render::OpaqueScene painted_;
   synth::CameraEffects effects_;
+  synth::Passer passer_;
 };
 
 void write_png(const fs::path& file, const cv::Mat& image, int strategy) {
@@ -218,25 +277,28 @@ void make_folders(const fs::path& out) {
 
 std::vector<std::string> synthetic_scene_names() { return synth::scene_names(); }
 std::vector<std::string> synthetic_lens_names() { return synth::lens_names(); }
+std::vector<std::string> synthetic_trouble_names() { return synth::trouble_names(); }
 
 void write_synthetic(const SynthOptions& options, const fs::path& out,
                      const std::function<void(int, int)>& progress) {
   check(options);
   synth::Scene scene = scene_named(options);
   make_folders(out);
-  const double duration_s = scene.path.duration_s();
-  const int total =
-      options.frames > 0 ? options.frames : static_cast<int>(std::lround(duration_s * options.fps));
   Generator generator(options, std::move(scene));
+  const int total = options.frames > 0
+                        ? options.frames
+                        : static_cast<int>(std::lround(generator.duration_s() * options.fps));
   synth::TruthFiles truth(out, generator.scene().model.planes);
   // Encoding takes as long as drawing: the frame before is written meanwhile.
   std::future<void> writing;
+  int written = 0;
   for (int frame = 0; frame < total; ++frame) {
+    throw_if_cancelled("the sequence is not complete, and has no list of its pictures yet");
     const double time_s = frame / options.fps;
+    if (generator.is_dropped(frame, time_s)) continue;
     FramePictures pictures = generator.draw(frame, time_s);
     pictures.stamp = fmt::format("{:.6f}", time_s);
-    truth.add_frame(pictures.stamp, frame, generator.scene().path.world_from_cam(time_s),
-                    pictures.mask);
+    truth.add_frame(pictures.stamp, written++, generator.world_from_cam(time_s), pictures.mask);
     if (writing.valid()) writing.get();
     writing = std::async(std::launch::async, write_pictures, out, std::move(pictures));
     if (progress) progress(frame + 1, total);

@@ -17,12 +17,15 @@ struct SynthOptions {
   double fps = 30.0;
   std::string lens = "none";  ///< none | wide (with barrel distortion)
   bool effects = true;  ///< camera noise, vignetting, blur, exposure drift; a noisy depth sensor
-  double depth_factor = 5000;  ///< depth image units per metre
-  std::string shader_dir;      ///< empty: the shaders among the assets
+  std::string trouble = "none";  ///< see synthetic_trouble_names()
+  double depth_factor = 5000;    ///< depth image units per metre
+  std::string shader_dir;        ///< empty: the shaders among the assets
 };
 
 std::vector<std::string> synthetic_scene_names();
 std::vector<std::string> synthetic_lens_names();
+/// What makes a recording hard: blur, exposure, rolling-shutter, moving, dropped; none.
+std::vector<std::string> synthetic_trouble_names();
 
 /// Writes a sequence with exact truth in TUM format: rgb/, depth/, mask/ and their lists,
 /// groundtruth.txt (world from camera; metres, z up, the floor at z = 0), camera.yaml and

@@ -1,6 +1,7 @@
 #include "engine/sequence/synth/camera_effects.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
@@ -30,6 +31,13 @@ void blur_along(cv::Mat& bgr, const Eigen::Vector2d& step_px) {
     kernel.at<float>(y, x) += 1.0F / kSamples;
   }
   cv::filter2D(bgr, bgr, -1, kernel, {-1, -1}, 0, cv::BORDER_REPLICATE);
+}
+
+/// What an automatic exposure of few steps does.
+double jumped_exposure(double time_s) {
+  constexpr double kEvery_s = 1.1;
+  constexpr std::array<double, 5> kGains = {1.0, 0.45, 1.3, 0.6, 1.6};
+  return kGains[static_cast<std::size_t>(time_s / kEvery_s) % kGains.size()];
 }
 
 double exposure_at(double time_s, double drift) {
@@ -64,7 +72,9 @@ CameraEffects::CameraEffects(const EffectOptions& options, int width, int height
 void CameraEffects::apply(cv::Mat& bgr, int frame, double time_s,
                           const Eigen::Vector2d& flow_px_per_s) const {
   blur_along(bgr, options_.shutter_s * flow_px_per_s);
-  const double encoded = std::pow(exposure_at(time_s, options_.exposure_drift), 1.0 / 2.2);
+  double light = exposure_at(time_s, options_.exposure_drift);
+  if (options_.exposure_jumps) light *= jumped_exposure(time_s);
+  const double encoded = std::pow(light, 1.0 / 2.2);
   const int exposure = static_cast<int>(std::lround(encoded * 256.0));
   for (int y = 0; y < bgr.rows; ++y) {
     auto* pixel = bgr.ptr<std::uint8_t>(y);

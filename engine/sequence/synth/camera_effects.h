@@ -12,6 +12,7 @@ struct EffectOptions {
   double noise_sigma = 1.8;      ///< grey levels in mid tones
   double vignetting = 0.22;      ///< loss of light in the corners
   double exposure_drift = 0.06;  ///< largest relative change over time
+  bool exposure_jumps = false;   ///< from one frame to the next, every second or so
   double shutter_s = 0.007;      ///< for the blur of turning
 };
 
