@@ -12,6 +12,7 @@
 #include "engine/benchmark/config.h"
 #include "engine/benchmark/report_files.h"
 #include "engine/benchmark/runner.h"
+#include "engine/cancel.h"
 #include "engine/output/atomic_file.h"
 
 namespace planecast::app {
@@ -50,7 +51,10 @@ struct BenchmarkCommand {
     const std::vector<engine::BenchmarkRow> rows = runner.run();
     engine::write_benchmark_report(plan, rows, runner, facts(plan), options.output);
     const std::string results = (options.output / "results.md").string();
-    common.print_result(results, {{"results", results}, {"rows", to_json(rows)}});
+    common.print_result(results, {{"results", results},
+                                  {"interrupted", engine::cancel_requested()},
+                                  {"rows", to_json(rows)}});
+    engine::throw_if_cancelled("runs that were completed are in the results; --resume keeps them");
     const bool failed = std::any_of(rows.begin(), rows.end(), [](const engine::BenchmarkRow& row) {
       return !row.usable() && row.status != "not present";
     });

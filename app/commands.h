@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <memory>
 
 namespace planecast::app {
 
@@ -9,6 +10,9 @@ inline constexpr const char* kVersion = PLANECAST_VERSION;
 
 /// What the parsed command line asks for; returns the exit status.
 using Action = std::function<int()>;
+
+/// The whole command line. What was parsed sets `action`, which must outlive it.
+std::unique_ptr<CLI::App> make_cli(Action& action);
 
 /// Each adds one subcommand, which sets `action` when it is chosen.
 void add_run(CLI::App& app, Action& action);

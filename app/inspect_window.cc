@@ -11,6 +11,7 @@
 #include <memory>
 #include <opencv2/imgproc.hpp>
 
+#include "engine/cancel.h"
 #include "engine/user_error.h"
 
 // GLFW's own header for them asks for the headers of an X extension that we do not use.
@@ -94,7 +95,8 @@ void show_window(engine::InspectWindow& window, engine::InspectScreen& screen, c
   screen.gui().make_current();
   const Input input(handle.get());
   double last_s = glfwGetTime();
-  while (glfwWindowShouldClose(handle.get()) == GLFW_FALSE && !window.wants_to_close()) {
+  while (glfwWindowShouldClose(handle.get()) == GLFW_FALSE && !window.wants_to_close() &&
+         !engine::cancel_requested()) {
     // A click takes ImGui several pictures to answer.
     for (int i = 0; i < kPicturesAfterInput; ++i) {
       int width = 0;

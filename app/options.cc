@@ -5,6 +5,7 @@
 
 #include "app/manual.h"
 #include "engine/output/atomic_file.h"
+#include "engine/output/json_text.h"
 #include "engine/segmentation/choose_segmenter.h"
 #include "engine/sequence/frame_options.h"
 #include "engine/user_error.h"
@@ -33,7 +34,7 @@ Console CommonOptions::console() const {
 
 void CommonOptions::print_result(const std::string& text,
                                  const nlohmann::ordered_json& figures) const {
-  const std::string machine = json.empty() ? "" : figures.dump(2);
+  const std::string machine = json.empty() ? "" : engine::json_text(figures, 2);
   if (json == "-") {
     console().result(machine);
     return;

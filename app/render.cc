@@ -24,7 +24,10 @@ struct RenderCommand {
     const engine::RenderSequenceResult result = render_with_progress(
         *sequence, map, scene, resolve(rendering, common, input, causal), output, console);
     const RenderingReport report = report_rendering(result, output, console);
-    common.print_result(report.place, {{"output", output}, {"rendering", report.figures}});
+    common.print_result(
+        report.place,
+        {{"output", output}, {"interrupted", result.interrupted}, {"rendering", report.figures}});
+    if (result.interrupted) throw_interrupted(result, output);
     return result.unreadable.empty() ? kDone : kPoorResult;
   }
 };

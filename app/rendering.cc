@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "app/manual.h"
+#include "engine/cancel.h"
 #include "engine/scene/content.h"
 #include "engine/scene/default_scene.h"
 
@@ -83,7 +84,8 @@ RenderingReport report_rendering(const engine::RenderSequenceResult& result,
   console.detail("drawn by the processor: " + std::to_string(result.by_processor) +
                  ", by OpenGL: " + std::to_string(result.with_content - result.by_processor));
   RenderingReport report;
-  report.place = result.video.empty() ? folder.string() : result.video.string();
+  report.place =
+      result.video.empty() || result.interrupted ? folder.string() : result.video.string();
   report.figures["frames"] = result.frames;
   report.figures["with_content"] = result.with_content;
   report.figures["drawn_by"] = {{"processor", result.by_processor},
@@ -91,8 +93,18 @@ RenderingReport report_rendering(const engine::RenderSequenceResult& result,
   report.figures["unreadable"] = result.unreadable;
   report.figures["mean_ms"] = result.mean_ms;
   report.figures["warnings"] = result.warnings;
-  if (!result.video.empty()) report.figures["video"] = result.video.string();
+  if (!result.video.empty() && !result.interrupted) report.figures["video"] = result.video.string();
   return report;
+}
+
+void throw_interrupted(const engine::RenderSequenceResult& result,
+                       const std::filesystem::path& folder) {
+  std::string how_far = std::to_string(result.frames) + " frames were drawn";
+  if (!result.video.empty()) {
+    how_far += "; complete parts of the video are in " + (folder / "segments").string() +
+               ", and --resume goes on from there";
+  }
+  throw engine::Cancelled(how_far);
 }
 
 }  // namespace planecast::app

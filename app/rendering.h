@@ -46,4 +46,8 @@ struct RenderingReport {
 RenderingReport report_rendering(const engine::RenderSequenceResult& result,
                                  const std::filesystem::path& folder, const Console& console);
 
+/// Cancelled, with what is there to go on from.
+[[noreturn]] void throw_interrupted(const engine::RenderSequenceResult& result,
+                                    const std::filesystem::path& folder);
+
 }  // namespace planecast::app

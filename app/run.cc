@@ -10,6 +10,7 @@
 #include "engine/output/report.h"
 #include "engine/output/summary.h"
 #include "engine/pipeline/reconstruction_io.h"
+#include "engine/pipeline/resume_tracking.h"
 #include "engine/user_error.h"
 
 namespace planecast::app {
@@ -26,6 +27,7 @@ struct RunCommand {
 
  private:
   engine::Reconstruction reconstruct(engine::Sequence& sequence, const Console& console) const;
+  void print_stopped(const engine::Reconstruction& reconstruction) const;
   void write_report(const engine::Reconstruction& reconstruction,
                     const engine::RenderSequenceResult& result,
                     const engine::Sequence& sequence) const;
@@ -34,16 +36,24 @@ struct RunCommand {
 /// Tracks, or, to resume, takes what an earlier run has completed.
 engine::Reconstruction RunCommand::reconstruct(engine::Sequence& sequence,
                                                const Console& console) const {
-  std::error_code ignored;
-  if (rendering.resume &&
-      std::filesystem::exists(std::filesystem::path(output) / "map.bin", ignored)) {
+  const engine::TrackSequenceOptions options = tracking.resolve(common, input);
+  if (rendering.resume && engine::is_tracked(sequence, options, output)) {
     console.info("resuming with the reconstruction in " + output);
     return engine::read_reconstruction(output);
   }
-  engine::Reconstruction reconstruction =
-      track_with_progress(sequence, tracking.resolve(common, input), console);
-  engine::write_reconstruction(reconstruction, output);
+  const engine::Reconstruction tracked = track_with_progress(sequence, options, console);
+  engine::write_tracked(tracked, sequence, options, output);
+  // Drawn from the files, as a resumed run does: numbers written as text differ in their last bits.
+  engine::Reconstruction reconstruction = engine::read_reconstruction(output);
+  reconstruction.stopped = tracked.stopped;
   return reconstruction;
+}
+
+/// For those who read the figures of a run that was asked to end.
+void RunCommand::print_stopped(const engine::Reconstruction& reconstruction) const {
+  common.print_result(output, {{"output", output},
+                               {"interrupted", true},
+                               {"summary", engine::summary_json(reconstruction)}});
 }
 
 void RunCommand::write_report(const engine::Reconstruction& reconstruction,
@@ -83,16 +93,27 @@ int RunCommand::run() const {
   const engine::Reconstruction reconstruction = reconstruct(*sequence, console);
   const TrackingReport tracked = report_tracking(reconstruction, tracking.causal);
   console.info(tracked.line);
+  if (engine::was_interrupted(reconstruction)) {
+    print_stopped(reconstruction);
+    engine::require_complete(reconstruction);
+  }
   const engine::RenderSequenceOptions options = resolve(rendering, common, input, tracking.causal);
   engine::RenderSequenceResult result;
   try {
     result = render_with_progress(*sequence, reconstruction, scene, options, output, console);
   } catch (const engine::UserError& error) {
     // Where tracking failed the content has no place: that is a poor result, not a bad scene.
-    if (!tracked.poor) throw;
+    if (!tracked.poor) {
+      engine::require_complete(reconstruction);
+      throw;
+    }
     console.warning(error.what());
     result = render_with_progress(*sequence, reconstruction, engine::SceneFile{}, options, output,
                                   console);
+  }
+  if (result.interrupted) {
+    print_stopped(reconstruction);
+    throw_interrupted(result, output);
   }
   write_report(reconstruction, result, *sequence);
   const RenderingReport rendered = report_rendering(result, output, console);

@@ -5,6 +5,7 @@
 #include "app/commands.h"
 #include "app/manual.h"
 #include "app/options.h"
+#include "engine/cancel.h"
 #include "engine/segmentation/choose_segmenter.h"
 #include "engine/segmentation/mask_files.h"
 #include "engine/sequence/image_file.h"
@@ -38,7 +39,9 @@ struct SegmentCommand {
                                   {"file", mask.file},
                                   {"instances", mask.instances}});
     }
+    figures["interrupted"] = engine::cancel_requested();
     common.print_result(masks.finish().string(), figures);
+    engine::throw_if_cancelled("mask.txt lists the masks that were made");
     return kDone;
   }
 
@@ -66,6 +69,7 @@ struct SegmentCommand {
     engine::MaskFolder masks(output, segmenter->name(), overlay);
     ProgressBar bar(console, "segmenting");
     for (int index = sequence->first_frame(); index < sequence->end_frame(); ++index) {
+      if (engine::cancel_requested()) break;
       const slam::FrameInput frame = sequence->read(index);
       masks.add(index, frame.timestamp, frame.image, segmenter->segment(frame));
       bar.update(index + 1 - sequence->first_frame(),

@@ -6,7 +6,7 @@
 #include "app/options.h"
 #include "engine/output/atomic_file.h"
 #include "engine/output/summary.h"
-#include "engine/pipeline/reconstruction_io.h"
+#include "engine/pipeline/resume_tracking.h"
 
 namespace planecast::app {
 namespace {
@@ -25,12 +25,14 @@ struct TrackCommand {
     const std::unique_ptr<engine::Sequence> sequence = input.open();
     engine::make_folder(output);
     const engine::Reconstruction reconstruction = track_with_progress(*sequence, options, console);
-    engine::write_reconstruction(reconstruction, output);
+    engine::write_tracked(reconstruction, *sequence, options, output);
     const TrackingReport report = report_tracking(reconstruction, tracking.causal);
     console.info(report.line);
     common.print_result(output, {{"output", output},
                                  {"poor", report.poor},
+                                 {"interrupted", engine::was_interrupted(reconstruction)},
                                  {"summary", engine::summary_json(reconstruction)}});
+    engine::require_complete(reconstruction);
     if (report.poor) console.warning("tracking was lost for more than half of the frames");
     return report.poor ? kPoorResult : kDone;
   }

@@ -2,8 +2,11 @@
 
 #include <fcntl.h>
 #include <malloc.h>
+#include <poll.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,6 +15,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "engine/cancel.h"
 #include "engine/user_error.h"
 
 namespace planecast::engine {
@@ -74,6 +78,21 @@ pid_t start(const std::vector<std::string>& arguments, const std::filesystem::pa
   return pid;
 }
 
+/// Until the child ends, which it is told to do where this process was.
+void wait_or_cancel(pid_t pid) {
+  constexpr int kLookEvery_ms = 50;
+  // Debian 12's own declaration of it is not one for C++.
+  const auto child = static_cast<int>(syscall(SYS_pidfd_open, pid, 0));
+  if (child < 0) return;  // an old kernel: the child alone decides
+  pollfd ended{child, POLLIN, 0};
+  while (poll(&ended, 1, kLookEvery_ms) <= 0) {
+    if (!cancel_requested()) continue;
+    kill(pid, SIGTERM);
+    break;
+  }
+  close(child);
+}
+
 }  // namespace
 
 ChildResult run_this_executable(const std::vector<std::string>& arguments,
@@ -81,6 +100,7 @@ ChildResult run_this_executable(const std::vector<std::string>& arguments,
   lower_memory_mark();
   const auto begin = std::chrono::steady_clock::now();
   const pid_t pid = start(arguments, log);
+  wait_or_cancel(pid);
   int status = 0;
   rusage usage{};
   while (wait4(pid, &status, 0, &usage) < 0 && errno == EINTR) {

@@ -7,11 +7,13 @@
 
 #include "engine/benchmark/child_process.h"
 #include "engine/benchmark/measure.h"
+#include "engine/cancel.h"
 #include "engine/output/atomic_file.h"
+#include "engine/output/json_text.h"
+#include "engine/program.h"
 #include "engine/sequence/frame_options.h"
 #include "engine/sequence/made_sequence.h"
 #include "engine/user_error.h"
-#include "slam/data/byte_stream.h"
 
 namespace planecast::engine {
 
@@ -33,6 +35,9 @@ std::vector<std::string> synth_arguments(const SynthOptions& synth, const fs::pa
     arguments.insert(arguments.end(), {"--count", std::to_string(synth.frames)});
   }
   if (synth.lens != "none") arguments.insert(arguments.end(), {"--lens", synth.lens});
+  if (synth.trouble != "none") {
+    arguments.insert(arguments.end(), {"--trouble", synth.trouble});
+  }
   if (!synth.effects) arguments.emplace_back("--no-effects");
   return arguments;
 }
@@ -53,11 +58,6 @@ std::string describe(const BenchmarkRow& row) {
     text += fmt::format(", {} {:.{}f}", info.label, found->second, info.decimals);
   }
   return text;
-}
-
-/// Tells this build from every other: figures of two are not mixed.
-std::string program_key() {
-  return fmt::format("{:016x}", slam::checksum_of(read_file("/proc/self/exe")));
 }
 
 }  // namespace
@@ -193,7 +193,7 @@ void BenchmarkRunner::write_row(const BenchmarkRow& row) const {
   json["arguments"] = row.run.arguments;
   json["status"] = row.status;
   json["metrics"] = row.metrics;
-  write_file(row.run.folder / kRunFile, json.dump(1) + "\n");
+  write_file(row.run.folder / kRunFile, json_text(json) + "\n");
 }
 
 std::optional<BenchmarkRow> BenchmarkRunner::read_row(const BenchmarkRun& run) const {
@@ -219,7 +219,9 @@ std::vector<BenchmarkRow> BenchmarkRunner::run() {
   const std::vector<BenchmarkRun> runs = plan();
   std::vector<BenchmarkRow> rows;
   for (const BenchmarkRun& run : runs) {
-    rows.push_back(execute(run));
+    BenchmarkRow row = execute(run);
+    if (cancel_requested()) break;  // the run was ended with this process
+    rows.push_back(std::move(row));
     if (report_) {
       report_(static_cast<int>(rows.size()), static_cast<int>(runs.size()), describe(rows.back()));
     }

@@ -9,6 +9,7 @@
 #include <opencv2/calib3d.hpp>
 
 #include "engine/calibrate/view_selection.h"
+#include "engine/cancel.h"
 #include "engine/sequence/camera_file.h"
 #include "engine/user_error.h"
 
@@ -206,6 +207,7 @@ Calibration calibrate_camera(Sequence& recording, const BoardSpec& board,
   std::vector<CalibrationView> found;
   cv::Size size;
   for (int i = 0; i < count; ++i) {
+    throw_if_cancelled();
     const int frame =
         recording.first_frame() + static_cast<int>(static_cast<long long>(i) * total / count);
     const cv::Mat image = recording.read(frame).image;

@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <set>
 
+#include "engine/cancel.h"
 #include "engine/sequence/image_file.h"
 #include "engine/sequence/list_file.h"
 #include "engine/user_error.h"
@@ -112,6 +113,7 @@ MaskResult evaluate_masks(const std::filesystem::path& masks, Sequence& truth,
   const std::vector<int> partner = pair_by_time(frame_times, times);
   MaskSums sums;
   for (int i = truth.first_frame(); i < truth.end_frame(); ++i) {
+    throw_if_cancelled();
     const cv::Mat true_labels = truth.read(i).labels;
     if (true_labels.empty()) continue;
     const int file = partner[static_cast<std::size_t>(i - truth.first_frame())];

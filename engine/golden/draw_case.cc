@@ -68,7 +68,9 @@ Reconstruction reconstruct(const GoldenCase& golden_case, Sequence& sequence, in
   options.causal = golden_case.causal;
   options.seed = golden_case.seed;
   options.threads = threads;
-  return track_sequence(sequence, options, progress);
+  Reconstruction reconstruction = track_sequence(sequence, options, progress);
+  require_complete(reconstruction);
+  return reconstruction;
 }
 
 }  // namespace

@@ -4,7 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/output/atomic_file.h"
+#include "engine/output/json_text.h"
 #include "engine/sequence/camera_file.h"
+#include "engine/user_error.h"
 
 namespace planecast::engine {
 namespace {
@@ -86,11 +88,24 @@ Json summary_json(const Reconstruction& reconstruction) {
   json["median_depth"] = reconstruction.median_depth;
   json["path_length"] = summary.path_length;
   json["warnings"] = reconstruction.warnings;
+  if (!reconstruction.stopped.empty()) json["stopped"] = reconstruction.stopped;
   return json;
 }
 
 void write_summary(const Reconstruction& reconstruction, const std::filesystem::path& path) {
-  write_file(path, summary_json(reconstruction).dump(1) + "\n");
+  write_file(path, json_text(summary_json(reconstruction)) + "\n");
+}
+
+std::optional<PlaneRms> read_plane_rms(const std::filesystem::path& path) {
+  const nlohmann::json json = nlohmann::json::parse(read_file(path), nullptr, false);
+  if (!json.is_object()) throw UserError(path.string() + ": is not a summary");
+  if (!json.contains("point_plane_rms")) return std::nullopt;
+  try {
+    const nlohmann::json& rms = json["point_plane_rms"];
+    return PlaneRms{rms.at("before").get<double>(), rms.at("after").get<double>()};
+  } catch (const nlohmann::json::exception&) {
+    throw UserError(path.string() + ": its point_plane_rms is broken");
+  }
 }
 
 }  // namespace planecast::engine

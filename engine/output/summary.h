@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 
 #include "engine/pipeline/reconstruction.h"
@@ -29,8 +30,11 @@ struct Summary {
 
 Summary summarise(const Reconstruction& reconstruction);
 
-/// summary.json: mode, segmentation, units, camera, the counts above, planes by class, warnings.
+/// summary.json: mode, segmentation, units, camera, the counts above, planes by class, warnings;
+/// `stopped` where it ends before the sequence does, with the reason.
 nlohmann::ordered_json summary_json(const Reconstruction& reconstruction);
 void write_summary(const Reconstruction& reconstruction, const std::filesystem::path& path);
+/// The part of it that no other file holds; nothing where there is none. Throws UserError.
+std::optional<PlaneRms> read_plane_rms(const std::filesystem::path& path);
 
 }  // namespace planecast::engine

@@ -17,6 +17,7 @@ namespace planecast::engine {
 namespace {
 
 constexpr std::string_view kFramesHeader = "index,timestamp,state,reason,inliers";
+constexpr std::string_view kTimeUnit = " ms";
 constexpr const char* kTracking = "Tracking";
 constexpr const char* kSegmentation = "Instance Planar Segmentation";
 constexpr std::array<const char*, 11> kPaperRows = {kTracking,
@@ -53,6 +54,15 @@ template <typename T>
 bool parse_number(const std::string& text, T& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end == text.data() + text.size() && !text.empty();
+}
+
+/// The first line of `rest`, which moves behind it.
+std::string_view take_line(std::string_view& rest) {
+  const std::size_t end = std::min(rest.find('\n'), rest.size());
+  std::string_view line = rest.substr(0, end);
+  rest.remove_prefix(std::min(end + 1, rest.size()));
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  return line;
 }
 
 bool parse_frame(std::string_view line, FrameRecord& frame) {
@@ -116,10 +126,7 @@ std::vector<FrameRecord> read_frames_csv(const std::filesystem::path& path) {
   std::vector<FrameRecord> frames;
   std::string_view rest = text;
   for (int line_number = 1; !rest.empty(); ++line_number) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    std::string_view line = rest.substr(0, end);
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-    if (line.ends_with('\r')) line.remove_suffix(1);
+    const std::string_view line = take_line(rest);
     if (line_number == 1) {
       if (line != kFramesHeader) {
         throw UserError(
@@ -137,7 +144,7 @@ std::vector<FrameRecord> read_frames_csv(const std::filesystem::path& path) {
 void write_times_csv(const Reconstruction& reconstruction, const std::filesystem::path& path) {
   const std::vector<std::string> names = frame_stage_names(reconstruction);
   std::string text = "index";
-  for (const std::string& name : names) text += "," + csv_field(name + " ms");
+  for (const std::string& name : names) text += "," + csv_field(name + std::string(kTimeUnit));
   text += '\n';
   for (std::size_t i = 0; i < reconstruction.frame_times.size(); ++i) {
     const bool known = i < reconstruction.frames.size();
@@ -153,9 +160,35 @@ void write_times_csv(const Reconstruction& reconstruction, const std::filesystem
   write_file(path, text);
 }
 
+std::vector<StageTimes> read_times_csv(const std::filesystem::path& path) {
+  const std::string text = read_file(path);
+  std::string_view rest = text;
+  std::vector<std::string> names = split_csv(take_line(rest));
+  for (std::string& name : names) {
+    if (name.ends_with(kTimeUnit)) name.resize(name.size() - kTimeUnit.size());
+  }
+  std::vector<StageTimes> frames;
+  for (int line_number = 2; !rest.empty(); ++line_number) {
+    const std::vector<std::string> fields = split_csv(take_line(rest));
+    StageTimes& times = frames.emplace_back();
+    bool good = fields.size() == names.size();
+    for (std::size_t i = 1; good && i < fields.size(); ++i) {
+      double ms = 0.0;
+      if (fields[i].empty()) continue;
+      good = parse_number(fields[i], ms);
+      times.emplace_back(names[i], ms);
+    }
+    if (!good) {
+      throw UserError(fmt::format("{}:{}: is not a frame's times", path.string(), line_number));
+    }
+  }
+  return frames;
+}
+
 std::vector<std::string> paper_timing_names() { return {kPaperRows.begin(), kPaperRows.end()}; }
 
 std::vector<TimingRow> timing_rows(const Reconstruction& reconstruction) {
+  if (!reconstruction.timings.empty()) return reconstruction.timings;
   std::vector<TimingRow> rows;
   for (const char* name : kPaperRows) {
     rows.push_back({name, statistics_of(name == kTracking ? tracking_samples(reconstruction)
@@ -192,7 +225,8 @@ void write_timings_json(const Reconstruction& reconstruction, const std::filesys
 std::vector<TimingRow> read_timings_json(const std::filesystem::path& path) {
   std::vector<TimingRow> rows;
   try {
-    for (const auto& json : nlohmann::json::parse(read_file(path)).at("rows")) {
+    const nlohmann::json document = nlohmann::json::parse(read_file(path));
+    for (const auto& json : document.at("rows")) {
       TimingRow& row = rows.emplace_back();
       row.name = json.at("name").get<std::string>();
       row.ms.count = json.at("count").get<int>();

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "engine/evaluate/statistics.h"
 #include "engine/pipeline/reconstruction.h"
 
 namespace planecast::engine {
@@ -18,12 +17,8 @@ std::vector<FrameRecord> read_frames_csv(const std::filesystem::path& path);
 /// times.csv: `index` and milliseconds by stage (columns in order of first appearance; empty where
 /// a frame had no such stage).
 void write_times_csv(const Reconstruction& reconstruction, const std::filesystem::path& path);
-
-/// Milliseconds of one stage over the run.
-struct TimingRow {
-  std::string name;
-  Statistics ms;  ///< count 0: the stage never ran
-};
+/// The times by frame, in the file's order. Throws UserError naming file and line.
+std::vector<StageTimes> read_times_csv(const std::filesystem::path& path);
 
 /// Names of the rows of the paper's Table 2, in its order.
 std::vector<std::string> paper_timing_names();
@@ -31,6 +26,7 @@ std::vector<std::string> paper_timing_names();
 /// The rows of the paper's Table 2 in its order, then every other stage. A row's samples are the
 /// keyframes' (mapping_times) or, where there are none, the frames' (frame_times) under its name;
 /// "Tracking" without samples of its own is the sum of a frame's stages but for the segmentation.
+/// A reconstruction that was read back has its rows as they were.
 std::vector<TimingRow> timing_rows(const Reconstruction& reconstruction);
 
 /// timings.json: `{"unit": "ms", "rows": [{"name", "count", "mean", "median", "p95"}]}`.

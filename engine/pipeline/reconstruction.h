@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/evaluate/statistics.h"
 #include "slam/data/camera.h"
 #include "slam/data/map.h"
 #include "slam/data/types.h"
@@ -88,14 +89,20 @@ struct PlaneRms {
   double after = 0.0;
 };
 
+/// Milliseconds of one stage over the run.
+struct TimingRow {
+  std::string name;
+  Statistics ms;  ///< count 0: the stage never ran
+};
+
 /// What SLAM leaves behind: in memory, and as the reconstruction folder on disk.
 struct Reconstruction {
   slam::Camera camera;
   bool metric = false;  ///< units are metres, else map units
   std::string mode;     ///< "mono" or "rgbd"
   std::string segmentation;
-  std::optional<PlaneRms> plane_rms;  ///< of the run itself; not read back
-  double median_depth = 1.0;          ///< of the finished map
+  std::optional<PlaneRms> plane_rms;
+  double median_depth = 1.0;  ///< of the finished map
   std::vector<FrameRecord> frames;
   std::vector<KeyframeRecord> keyframes;
   std::vector<MapChange> map_changes;  ///< ascending by frame
@@ -105,7 +112,9 @@ struct Reconstruction {
   double up_confidence = 0.0;
   std::vector<StageTimes> frame_times;                       ///< per frame
   std::map<std::string, std::vector<double>> mapping_times;  ///< per keyframe and stage
+  std::vector<TimingRow> timings;  ///< of one that was read back, whose samples are gone
   std::vector<std::string> warnings;
+  std::string stopped;  ///< why it ends before the sequence; empty: it does not. Not read back
   std::shared_ptr<const slam::Map> map;  ///< what map.bin needs to go on from; may be null
 };
 

@@ -118,6 +118,16 @@ Reconstruction read_reconstruction(const fs::path& folder) {
   reconstruction.up = planes.up;
   reconstruction.up_confidence = planes.up_confidence;
   reconstruction.points = read_ply(folder / "map.ply");
+  // The figures are nothing that a render needs: folders without them are good.
+  if (fs::exists(folder / "times.csv", error)) {
+    reconstruction.frame_times = read_times_csv(folder / "times.csv");
+  }
+  if (fs::exists(folder / "timings.json", error)) {
+    reconstruction.timings = read_timings_json(folder / "timings.json");
+  }
+  if (fs::exists(folder / "summary.json", error)) {
+    reconstruction.plane_rms = read_plane_rms(folder / "summary.json");
+  }
   return reconstruction;
 }
 

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <sstream>
 
 #include "engine/assets.h"
+#include "engine/cancel.h"
 #include "engine/look/debug_overlay.h"
 #include "engine/output/atomic_file.h"
 #include "engine/output/match_move.h"
@@ -19,9 +19,11 @@
 #include "engine/pipeline/painting_threads.h"
 #include "engine/pipeline/picture_flow.h"
 #include "engine/pipeline/scene_light.h"
+#include "engine/program.h"
 #include "engine/scene/content.h"
 #include "engine/user_error.h"
 #include "render/gltf/polished.h"
+#include "slam/data/byte_stream.h"
 
 namespace planecast::engine {
 namespace {
@@ -118,9 +120,24 @@ void SequenceRenderer::open_outputs() {
   }
 }
 
-/// Everything but the pictures' own content that a frame depends on.
+/// Everything but the pictures' own content that a frame depends on. Models and poses count by
+/// their bytes, which a file's name does not tell.
 std::string SequenceRenderer::content_key() const {
-  std::string key = scene_.name.empty() ? "default scene" : read_file(scene_.name);
+  std::string key = "program " + program_key() + "\n";
+  key += scene_.name.empty() ? "default scene" : read_file(scene_.name);
+  for (const SceneObject& object : scene_.objects) {
+    const std::filesystem::path& file = object.poster ? object.poster->file : object.model;
+    key += fmt::format("\nmodel {:016x}", slam::checksum_of(read_file(file)));
+  }
+  slam::ByteWriter poses;
+  for (const FrameRecord& record : reconstruction_.frames) {
+    const auto& pose = options_.causal ? record.causal_world_from_cam : record.world_from_cam;
+    const Eigen::Matrix4d matrix = pose.value_or(slam::Pose::Identity()).matrix();
+    for (const double value : matrix.reshaped()) poses.put(value);
+  }
+  key += fmt::format("\nsequence {}\nposes {:016x}",
+                     std::filesystem::absolute(sequence_.path()).lexically_normal().string(),
+                     slam::checksum_of(poses.bytes()));
   key += "\nframes " + std::to_string(sequence_.first_frame()) + ":" +
          std::to_string(sequence_.end_frame());
   key += "\nseed " + std::to_string(options_.seed) + (options_.causal ? " causal" : "") +
@@ -142,11 +159,11 @@ int SequenceRenderer::resume_frame() const {
 }
 
 void SequenceRenderer::write(const Picture& picture) {
+  // First: the picture of a frame whose segment is complete is not drawn again.
+  if (options_.png) {
+    write_png(picture.bgr, folder_ / "frames" / fmt::format("{:06d}.png", picture.index));
+  }
   if (video_) video_->write(picture.bgr);
-  if (!options_.png) return;
-  char name[32];
-  std::snprintf(name, sizeof(name), "%06d.png", picture.index);
-  write_png(picture.bgr, folder_ / "frames" / name);
 }
 
 /// A painter of its own for each thread that paints: rendering contexts belong to one.
@@ -221,10 +238,11 @@ RenderSequenceResult SequenceRenderer::run(const Progress& progress) {
     PaintingThreads painters([this] { return make_painter(); }, options_.threads);
     for (bool more = true; more || !painters.empty();) {
       while (more && !painters.full()) {
-        std::optional<ReadFrame> job = reader.next();
+        result_.interrupted = cancel_requested();
+        std::optional<ReadFrame> job = result_.interrupted ? std::nullopt : reader.next();
         more = job && (job->error.empty() || options_.skip_unreadable);
-        if (more) painters.put(std::move(*job));
         if (job && !more) fatal = job->error;
+        if (more) painters.put(std::move(*job));
       }
       if (painters.empty()) break;
       PaintedFrame frame = painters.take();
@@ -236,6 +254,7 @@ RenderSequenceResult SequenceRenderer::run(const Progress& progress) {
     }
     writer.finish();
   }
+  if (result_.interrupted) return std::move(result_);
   // Even then what came before is completed; a video of nothing cannot be.
   if (video_ && (result_.frames > 0 || fatal.empty())) video_->finish();
   if (!fatal.empty()) throw UserError(fatal);
@@ -248,6 +267,7 @@ RenderSequenceResult SequenceRenderer::run(const Progress& progress) {
 RenderSequenceResult SequenceRenderer::draw(const std::vector<int>& frames) {
   const PaintingThreads::Paint paint = make_painter();
   for (const int index : frames) {
+    throw_if_cancelled();
     PaintedFrame frame = paint({index, sequence_.read(index), ""});
     take(frame);
     result_.stills.emplace_back(index, frame.bgr);

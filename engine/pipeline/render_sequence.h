@@ -29,9 +29,10 @@ struct RenderSequenceOptions {
 };
 
 struct RenderSequenceResult {
-  int frames = 0;                ///< written by this call
-  int with_content = 0;          ///< of them, those in which something was drawn
-  int by_processor = 0;          ///< of those, the ones drawn without OpenGL
+  int frames = 0;            ///< written by this call
+  bool interrupted = false;  ///< asked to end: the video is not joined, its complete segments stay
+  int with_content = 0;      ///< of them, those in which something was drawn
+  int by_processor = 0;      ///< of those, the ones drawn without OpenGL
   double units_per_metre = 0.0;  ///< as the sizes counted; 0: the map has no scale
   std::vector<int> unreadable;
   std::filesystem::path video;                  ///< empty when there is none
@@ -45,7 +46,8 @@ struct RenderSequenceResult {
 
 /// Draws the scene over every frame of the sequence. Frames without a pose keep their picture.
 /// Reading, drawing and encoding overlap, in order. Throws UserError for scene and input errors;
-/// when a frame in the middle cannot be read, after everything before it was completed.
+/// when a frame in the middle cannot be read, after everything before it was completed. A request
+/// to cancel (engine/cancel.h) ends it after the frame it is at.
 RenderSequenceResult render_sequence(Sequence& sequence, const Reconstruction& reconstruction,
                                      const SceneFile& scene, const RenderSequenceOptions& options,
                                      const std::filesystem::path& folder, const Progress& progress);

@@ -1,5 +1,7 @@
 #include "engine/pipeline/track_sequence.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -8,6 +10,7 @@
 #include <utility>
 
 #include "engine/assets.h"
+#include "engine/cancel.h"
 #include "engine/pipeline/earlier_map.h"
 #include "engine/pipeline/map_to_records.h"
 #include "engine/scene/plane_classes.h"
@@ -160,17 +163,17 @@ class TwoPassTracker {
 
   Reconstruction run() {
     first_pass();
-    const slam::FinishResult finished = system_.finish();
-    for (const auto& [stage, ms] : finished.mapping_times) mapping_times_[stage].push_back(ms);
-    joint_ = finished.joint;
+    if (stopped_ != kInterrupted) finish();
     take_over_references();
-    if (!options_.causal) second_pass();
+    if (!options_.causal && stopped_ != kInterrupted) second_pass();
     return records();
   }
 
  private:
   int total_steps() const { return options_.causal ? count_ : 2 * count_; }
   void first_pass();
+  void stop_before(int position, std::string reason);
+  void finish();
   void second_pass();
   void take_over_references();
   void localise_run(int begin, int end, int step, int& done);
@@ -199,6 +202,7 @@ class TwoPassTracker {
   KeyframePoses known_keyframes_;  ///< as of the last of the changes
   std::map<std::string, std::vector<double>> mapping_times_;
   slam::JointResult joint_;
+  std::string stopped_;  ///< why the frames end before the sequence
 };
 
 void TwoPassTracker::record_first(int position, const slam::FrameTrack& track) {
@@ -252,6 +256,7 @@ void TwoPassTracker::first_pass() {
   FramesAhead ahead(sequence_, system_, options_.threads > 1);
   ahead.request(first_, system_.initialised());
   for (int position = 0; position < count_; ++position) {
+    if (cancel_requested()) return stop_before(position, kInterrupted);
     FramesAhead::Prepared prepared = ahead.take();
     const bool initialised = system_.initialised();
     if (position + 1 < count_) ahead.request(first_ + position + 1, initialised);
@@ -262,12 +267,30 @@ void TwoPassTracker::first_pass() {
     if (prepared.image) {
       record_first(position, system_.track(*prepared.image));
     } else {
-      if (!options_.skip_unreadable) throw UserError(prepared.error);
+      if (!options_.skip_unreadable) return stop_before(position, prepared.error);
       record.state = "unreadable";
       record.reason = "not readable";
     }
     if (progress_) progress_(position + 1, total_steps());
   }
+}
+
+/// What comes before is kept and completed.
+void TwoPassTracker::stop_before(int position, std::string reason) {
+  if (position == 0 && reason != kInterrupted) throw UserError(reason);
+  stopped_ = std::move(reason);
+  count_ = position;
+  const auto size = static_cast<std::size_t>(position);
+  frames_.resize(size);
+  tracked_.resize(size);
+  localised_.resize(size);
+  times_.resize(size);
+}
+
+void TwoPassTracker::finish() {
+  const slam::FinishResult finished = system_.finish();
+  for (const auto& [stage, ms] : finished.mapping_times) mapping_times_[stage].push_back(ms);
+  joint_ = finished.joint;
 }
 
 /// Poses of the first pass, carried along with the keyframes as the map changed since.
@@ -303,7 +326,7 @@ void TwoPassTracker::localise_run(int begin, int end, int step, int& done) {
   FramesAhead ahead(sequence_, system_, options_.threads > 1);
   if (begin != end) ahead.request(first_ + begin, true);
   std::optional<slam::Pose> previous;
-  for (int position = begin; position != end; position += step) {
+  for (int position = begin; position != end && !cancel_requested(); position += step) {
     FramesAhead::Prepared prepared = ahead.take();
     if (position + step != end) ahead.request(first_ + position + step, true);
     const FrameRecord& record = frames_[static_cast<std::size_t>(position)];
@@ -329,7 +352,7 @@ void TwoPassTracker::second_pass() {
   // Backwards from the start: what came before the initialisation.
   localise_run(start, -1, -1, done);
   // What is still missing after a loss is tried from its later side.
-  for (int position = count_ - 1; position > start; --position) {
+  for (int position = count_ - 1; position > start && !cancel_requested(); --position) {
     if (frames_[static_cast<std::size_t>(position)].world_from_cam ||
         frames_[static_cast<std::size_t>(position)].state == "unreadable") {
       continue;
@@ -341,7 +364,11 @@ void TwoPassTracker::second_pass() {
         frames_[static_cast<std::size_t>(position + 1)].world_from_cam->inverse();
     localise_frame(position, prior, system_.prepare(sequence_.read(first_ + position), true));
   }
-  smooth();
+  if (cancel_requested()) {
+    stopped_ = kInterrupted;
+  } else {
+    smooth();
+  }
 }
 
 /// Tries frames of a run whose poses contradict their neighbours' once more, from where those put
@@ -418,6 +445,7 @@ Reconstruction TwoPassTracker::records() {
   result.frame_times = std::move(times_);
   result.mapping_times = std::move(mapping_times_);
   result.warnings = sequence_.warnings();
+  result.stopped = stopped_;
   UpOptions up_options;
   up_options.known_up = options_.up;
   classify_planes(result, up_options);
@@ -429,6 +457,16 @@ Reconstruction TwoPassTracker::records() {
 Reconstruction track_sequence(Sequence& sequence, const TrackSequenceOptions& options,
                               const Progress& progress) {
   return TwoPassTracker(sequence, options, progress).run();
+}
+
+bool was_interrupted(const Reconstruction& reconstruction) {
+  return reconstruction.stopped == kInterrupted;
+}
+
+void require_complete(const Reconstruction& reconstruction) {
+  if (reconstruction.stopped.empty()) return;
+  if (!was_interrupted(reconstruction)) throw UserError(reconstruction.stopped);
+  throw Cancelled(fmt::format("{} frames were tracked", reconstruction.frames.size()));
 }
 
 }  // namespace planecast::engine

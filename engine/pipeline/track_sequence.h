@@ -28,15 +28,24 @@ struct TrackSequenceOptions {
   std::string map;  ///< reconstruction folder to go on from; empty: start anew
 };
 
+/// Reconstruction::stopped of a run that was asked to end (engine/cancel.h).
+inline constexpr const char* kInterrupted = "interrupted";
+
 /// Called with (done, total) after each frame of either pass.
 using Progress = std::function<void(int done, int total)>;
 
 /// SLAM over the whole sequence; then, unless causal, every frame is localised against the finished
 /// map. With an earlier map the sequence is localised in it, mapping goes on from there, and the
 /// world and its units are the map's; keyframes and frames of the result are those of the sequence
-/// alone. Throws UserError for bad options, a map that cannot be used, and for a frame that cannot
-/// be read (without skip_unreadable).
+/// alone. A frame that cannot be read (without skip_unreadable) ends the sequence before it, and a
+/// request to cancel ends the work after the frame it is at: `stopped` tells. Throws UserError for
+/// bad options, a map that cannot be used, and where not even the first frame can be read.
 Reconstruction track_sequence(Sequence& sequence, const TrackSequenceOptions& options,
                               const Progress& progress);
+
+bool was_interrupted(const Reconstruction& reconstruction);
+/// Throws what ended the run before the sequence did: Cancelled, or UserError for the frame that
+/// could not be read.
+void require_complete(const Reconstruction& reconstruction);
 
 }  // namespace planecast::engine

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "engine/assets.h"
+#include "engine/cancel.h"
 #include "engine/convert.h"
 #include "engine/look/object_layer.h"
 #include "render/gltf/animate.h"
@@ -177,6 +178,7 @@ cv::Mat draw_turntable(const std::shared_ptr<const render::Model>& model,
   const int side = options.view_size_px;
   cv::Mat sheet(rows * side, columns * side, CV_8UC3, cv::Scalar(255, 255, 255));
   for (int number = 0; number < views; ++number) {
+    throw_if_cancelled();
     const View view = own ? own_view(stage, *model, options) : turned_view(stage, options, number);
     if (options.environment) {
       light_by(*options.environment, scene);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "engine/output/tables.h"
 #include "engine/pipeline/reconstruction_io.h"
 #include "test/unit/engine/output_test_files.h"
 
@@ -91,6 +92,33 @@ TEST(ReconstructionFolder, ReadsBackWhatWasWritten) {
   ASSERT_EQ(read.points.size(), 3U);
   EXPECT_EQ(read.points[1].position, r.points[1].position);
   EXPECT_EQ(read.points[1].plane, 2);
+}
+
+/// What the report of a resumed run shows of the tracking that it did not do itself.
+TEST(ReconstructionFolder, ReadsBackTheTimes) {
+  const TestFolder folder;
+  Reconstruction r = sample();
+  r.frame_times.assign(r.frames.size(), {});
+  r.frame_times[0] = {{"Tracking", 1.5}, {"with, comma", 2.25}};
+  r.frame_times[1] = {{"with, comma", 4.0}};
+  r.mapping_times["Local BA"] = {10.0, 20.0};
+  r.plane_rms = PlaneRms{0.5, 0.25};
+  write_reconstruction(r, folder / "map");
+  const Reconstruction read = read_reconstruction(folder / "map");
+  EXPECT_EQ(read.frame_times, r.frame_times);
+  const std::vector<TimingRow> written = timing_rows(r);
+  const std::vector<TimingRow> rows = timing_rows(read);
+  ASSERT_EQ(rows.size(), written.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(rows[i].name, written[i].name);
+    EXPECT_EQ(rows[i].ms.count, written[i].ms.count);
+    EXPECT_DOUBLE_EQ(rows[i].ms.p95, written[i].ms.p95);
+  }
+  ASSERT_TRUE(read.plane_rms.has_value());
+  EXPECT_EQ(read.plane_rms->after, 0.25);
+  std::filesystem::remove(folder / "map" / "times.csv");
+  std::filesystem::remove(folder / "map" / "timings.json");
+  EXPECT_TRUE(read_reconstruction(folder / "map").timings.empty());
 }
 
 TEST(ReconstructionFolder, HoldsTheFilesOfTheFormatAndNothingElse) {
