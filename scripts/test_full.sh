@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs what only the long tests need, builds everything and runs them (label `full`): shells,
-# batches by GNU parallel and Slurm, packages in a bare Debian, Blender, then SLAM
-# with the sanitizers (build/asan, build/tsan). The quick ones are scripts/test.sh.
+# batches by GNU parallel and Slurm, packages in a bare Debian, Blender, then all unit tests with ASan
+# and UBSan (build/asan) and SLAM with TSan (build/tsan). The quick ones are scripts/test.sh, the
+# fuzzers scripts/fuzz.sh.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/setup.sh
@@ -26,8 +27,11 @@ export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
 export TSAN_OPTIONS=suppressions=$supp/thread.supp:halt_on_error=1
 for preset in asan tsan; do
   echo "== $preset"
-  scripts/build.sh "$preset" unit_slam planecast
-  "build/$preset/test/unit_slam" --gtest_brief=1
+  # Threads beside SLAM's are the renderer's own and OpenCV's, which were built without TSan.
+  units=(unit_slam)
+  [ "$preset" = tsan ] || units+=(unit_render unit_engine)
+  scripts/build.sh "$preset" "${units[@]}" planecast
+  for unit in "${units[@]}"; do "build/$preset/test/$unit" --gtest_brief=1; done
   for mode in mono rgbd; do
     "build/$preset/planecast" track "$work/scene" -o "$work/$preset-$mode" --mode "$mode" \
       --threads 2 --quiet
