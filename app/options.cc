@@ -116,6 +116,11 @@ void add_tracking_options(CLI::App& command, TrackingOptions& options) {
       ->check(CLI::IsMember({"mono", "rgbd", "auto"}))
       ->capture_default_str();
   add_segmentation_options(command, options.segmentation, options.network);
+  command
+      .add_option("--mask-leakage", options.mask_leakage,
+                  "Corrupt the masks: this share of each is taken from what adjoins")
+      ->check(CLI::Range(0.0, 0.9))
+      ->capture_default_str();
   command.add_flag("--causal", options.causal,
                    "Each frame as it was known at its time (default: two passes)");
   command.add_flag("--no-loop-closing", options.no_loop_closing,
@@ -144,6 +149,7 @@ engine::TrackSequenceOptions TrackingOptions::resolve(const CommonOptions& commo
   result.mode = mode;
   result.segmentation = segmentation;
   result.network = network;
+  result.mask_leakage = mask_leakage;
   result.causal = causal;
   result.close_loops = !no_loop_closing;
   result.threads = common.threads;

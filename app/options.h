@@ -53,6 +53,7 @@ void add_segmentation_options(CLI::App& command, std::string& segmentation, std:
 struct TrackingOptions {
   std::string mode = "auto";
   std::string segmentation = "auto";
+  double mask_leakage = 0.0;
   std::string network;  ///< ONNX file; empty: our own
   std::string up;       ///< x,y,z
   std::string plane_merge = "default";

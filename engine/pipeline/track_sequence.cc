@@ -16,6 +16,7 @@
 #include "engine/scene/plane_classes.h"
 #include "engine/segmentation/choose_segmenter.h"
 #include "engine/user_error.h"
+#include "slam/segmentation/leaky_masks.h"
 #include "slam/stages/check_path.h"
 #include "slam/stages/smooth_path.h"
 #include "slam/system.h"
@@ -31,6 +32,13 @@ bool use_depth(const Sequence& sequence, const std::string& mode) {
     throw UserError(sequence.path().string() + ": --mode rgbd needs depth, and there is none");
   }
   return true;
+}
+
+std::unique_ptr<slam::PlaneSegmenter> make_segmenter(const Sequence& sequence, bool rgbd,
+                                                     const TrackSequenceOptions& options) {
+  auto segmenter = choose_segmenter({options.segmentation, options.network}, sequence, rgbd);
+  if (!(options.mask_leakage > 0.0)) return segmenter;
+  return slam::make_leaky_segmenter(std::move(segmenter), options.mask_leakage, options.seed);
 }
 
 std::shared_ptr<const slam::Vocabulary> load_vocabulary() {
@@ -148,7 +156,7 @@ class TwoPassTracker {
         rgbd_(use_depth(sequence, options.mode)),
         earlier_(read_earlier_map(options.map, sequence, rgbd_)),
         system_(system_options(options, rgbd_), earlier_.camera,
-                choose_segmenter({options.segmentation, options.network}, sequence, rgbd_)),
+                make_segmenter(sequence, rgbd_, options)),
         first_(sequence.first_frame()),
         count_(sequence.end_frame() - sequence.first_frame()) {
     frames_.resize(static_cast<std::size_t>(count_));

@@ -18,6 +18,7 @@ struct TrackSequenceOptions {
   int threads = 2;                    ///< changes no result
   std::uint64_t seed = 1;
   bool skip_unreadable = false;
+  double mask_leakage = 0.0;  ///< share of each mask that is made to be of others, for measurements
   std::optional<Eigen::Vector3d> up;    ///< unit, world; estimated where not given
   std::string plane_merge = "default";  ///< default | paper
   std::string plane_fit = "graph-cut";  ///< graph-cut | plain: sequential RANSAC alone

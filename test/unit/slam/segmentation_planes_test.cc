@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <map>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 #include <random>
 #include <vector>
 
 #include "planes_world.h"
 #include "slam/geometry/depth_noise.h"
 #include "slam/geometry/plane_geometry.h"
+#include "slam/segmentation/leaky_masks.h"
 #include "slam/segmentation/plane_segmenter.h"
 
 namespace planecast::slam {
@@ -37,6 +39,29 @@ TEST(MaskSegmenter, GivesTheMasksOfTheFrame) {
   ASSERT_EQ(labels.type(), CV_16U);
   EXPECT_EQ(labels.at<ushort>(4, 4), 3);
   EXPECT_TRUE(make_no_segmenter()->segment(frame).empty());
+}
+
+TEST(LeakySegmenter, EveryMaskHoldsTheShareOfOthersAsked) {
+  FrameInput frame;
+  frame.index = 5;
+  frame.image = cv::Mat::zeros(120, 160, CV_8U);
+  frame.labels = cv::Mat::zeros(120, 160, CV_16U);
+  frame.labels(cv::Rect(20, 20, 40, 40)).setTo(1);
+  frame.labels(cv::Rect(90, 50, 50, 40)).setTo(2);
+  const cv::Mat leaky = make_leaky_segmenter(make_mask_segmenter(), 0.2, 1)->segment(frame);
+  for (const int label : {1, 2}) {
+    const cv::Mat is = leaky == label;
+    const int foreign = cv::countNonZero(is & (frame.labels != label));
+    EXPECT_NEAR(foreign, 0.25 * cv::countNonZero(frame.labels == label), 1.0);
+    // One blob at the border: it hangs together with what it leaked from.
+    cv::Mat parts;
+    EXPECT_EQ(cv::connectedComponents(is, parts), 2);
+  }
+  const cv::Mat again = make_leaky_segmenter(make_mask_segmenter(), 0.2, 1)->segment(frame);
+  EXPECT_EQ(cv::countNonZero(again != leaky), 0);
+  frame.index = 6;
+  const cv::Mat other = make_leaky_segmenter(make_mask_segmenter(), 0.2, 1)->segment(frame);
+  EXPECT_GT(cv::countNonZero(other != leaky), 0);
 }
 
 /// Depth along z of what each pixel sees first, with the sensor's noise and holes at jumps in
