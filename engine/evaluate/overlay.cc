@@ -202,7 +202,8 @@ std::optional<OverlayResult> evaluate_overlay(const Reconstruction& estimate,
   const auto matches = evaluate_planes(estimate, truth, truth_poses, true_camera, options.planes);
   if (!matches) return std::nullopt;
   const std::vector<View> views = common_views(estimate, truth_poses, options);
-  const slam::Similarity estimate_from_truth = inverse(matches->trajectory.truth_from_estimate);
+  const slam::Similarity estimate_from_truth =
+      inverse(matches->trajectory.truth_from_estimate_by_poses);
   std::optional<PlaneMotion> motion;
   if (options.causal) motion.emplace(estimate, options.ease_frames);
   OverlayResult result;

@@ -96,6 +96,7 @@ int nearest_estimate(const RelationTable& relations, std::size_t t, double min_o
 std::vector<TruePlaneRow> describe_truth(const AlignedMap& map,
                                          const std::vector<PlaneRecord>& truth,
                                          const std::vector<char>& required,
+                                         const std::vector<int>& landmarks,
                                          const RelationTable& relations,
                                          const std::vector<int>& truth_of, double min_overlap) {
   std::vector<TruePlaneRow> rows;
@@ -106,6 +107,7 @@ std::vector<TruePlaneRow> describe_truth(const AlignedMap& map,
     row.plane_class = truth[t].plane_class;
     row.area_m2 = Patch(truth[t]).area();
     row.required = required[t] != 0;
+    row.landmarks = landmarks[t];
     const auto match = std::find(truth_of.begin(), truth_of.end(), static_cast<int>(t));
     row.matched = match != truth_of.end();
     int e = -1;
@@ -158,6 +160,28 @@ std::vector<int> nearest_true_patch(const std::vector<MapPoint>& points,
   return nearest;
 }
 
+/// Of each true patch, the landmarks within `distance_m` of it, whatever else they are near to.
+std::vector<int> landmarks_on(const std::vector<PlaneRecord>& truth,
+                              const std::vector<MapPoint>& points, double distance_m) {
+  std::vector<int> counts;
+  for (const PlaneRecord& plane : truth) {
+    const Patch patch(plane);
+    const auto lies_on = [&](const MapPoint& point) {
+      return std::abs(plane.normal.dot(point.position) + plane.offset) <= distance_m &&
+             patch.contains(point.position);
+    };
+    counts.push_back(static_cast<int>(std::count_if(points.begin(), points.end(), lies_on)));
+  }
+  return counts;
+}
+
+std::string format_row(const PlaneScore& s) {
+  return fmt::format(
+      "{:4.0f} cm {:3.0f} deg {:>9} {:>6} {:>6} {:>5} {:>9.3f} {:>7.3f} {:>6.3f} {:>5} {:>5}\n",
+      100.0 * s.tolerance.offset_m, s.tolerance.angle_deg, s.estimated, s.truth, s.matched, s.found,
+      s.precision, s.recall, s.f, s.over_segmented, s.under_segmented);
+}
+
 nlohmann::ordered_json to_json(const PlaneScore& score) {
   nlohmann::ordered_json json;
   json["offset_m"] = score.tolerance.offset_m;
@@ -181,6 +205,7 @@ nlohmann::ordered_json to_json(const TruePlaneRow& row) {
   json["class"] = row.plane_class;
   json["area_m2"] = row.area_m2;
   json["required"] = row.required;
+  json["landmarks"] = row.landmarks;
   json["matched"] = row.matched;
   json["estimate_id"] = row.estimate_id;
   json["angle_deg"] = row.angle_deg;
@@ -209,7 +234,7 @@ std::optional<PlaneResult> evaluate_planes(const Reconstruction& estimate,
   if (!trajectory) return std::nullopt;
   PlaneResult result;
   result.trajectory = *trajectory;
-  const AlignedMap map = align(estimate, trajectory->truth_from_estimate);
+  const AlignedMap map = align(estimate, trajectory->truth_from_estimate_by_poses);
   const RelationTable relations = relate_planes(map.planes, map.points, truth, options.grid_cells);
   const std::vector<char> required = required_planes(truth, truth_poses, camera, options);
   for (std::size_t level = 0; level < options.tolerances.size(); ++level) {
@@ -221,7 +246,15 @@ std::optional<PlaneResult> evaluate_planes(const Reconstruction& estimate,
   }
   const std::vector<int> truth_of =
       match_planes(relations, truth.size(), options.tolerances[0], options.min_overlap);
-  result.rows = describe_truth(map, truth, required, relations, truth_of, options.min_overlap);
+  const std::vector<int> landmarks = landmarks_on(truth, map.points, options.landmark_distance_m);
+  std::vector<char> supported = required;
+  for (std::size_t t = 0; t < truth.size(); ++t) {
+    if (landmarks[t] < options.min_landmarks) supported[t] = 0;
+  }
+  result.supported =
+      score_matches(truth_of, relations, supported, options.tolerances[0], options.min_overlap);
+  result.rows =
+      describe_truth(map, truth, required, landmarks, relations, truth_of, options.min_overlap);
   std::vector<double> angles;
   std::vector<double> offsets;
   for (const TruePlaneRow& row : result.rows) {
@@ -240,18 +273,15 @@ std::string format_table(const PlaneResult& result) {
   std::string text = fmt::format("{:14} {:>9} {:>6} {:>6} {:>5} {:>9} {:>7} {:>6} {:>5} {:>5}\n",
                                  "tolerance", "estimated", "truth", "match", "found", "precision",
                                  "recall", "F", "over", "under");
-  for (const PlaneScore& s : result.scores) {
-    text += fmt::format(
-        "{:4.0f} cm {:3.0f} deg {:>9} {:>6} {:>6} {:>5} {:>9.3f} {:>7.3f} {:>6.3f} {:>5} {:>5}\n",
-        100.0 * s.tolerance.offset_m, s.tolerance.angle_deg, s.estimated, s.truth, s.matched,
-        s.found, s.precision, s.recall, s.f, s.over_segmented, s.under_segmented);
-  }
-  text += fmt::format("\n{:>5} {:>10} {:>8} {:>8} {:>8} {:>10} {:>10} {:>8}\n", "truth", "class",
-                      "area m2", "estimate", "state", "angle deg", "offset cm", "covered");
+  for (const PlaneScore& score : result.scores) text += format_row(score);
+  text += "of the true planes with enough landmarks:\n" + format_row(result.supported);
+  text +=
+      fmt::format("\n{:>5} {:>10} {:>8} {:>9} {:>8} {:>8} {:>10} {:>10} {:>8}\n", "truth", "class",
+                  "area m2", "landmarks", "estimate", "state", "angle deg", "offset cm", "covered");
   for (const TruePlaneRow& row : result.rows) {
     const char* state = row.matched ? "match" : row.required ? "missed" : "unseen";
-    text += fmt::format("{:>5} {:>10} {:>8.2f} {:>8} {:>8}", row.truth_id, row.plane_class,
-                        row.area_m2, row.estimate_id, state);
+    text += fmt::format("{:>5} {:>10} {:>8.2f} {:>9} {:>8} {:>8}", row.truth_id, row.plane_class,
+                        row.area_m2, row.landmarks, row.estimate_id, state);
     text += row.estimate_id < 0 ? "\n"
                                 : fmt::format(" {:>10.2f} {:>10.2f} {:>7.0f}%\n", row.angle_deg,
                                               100.0 * row.offset_m, 100.0 * row.coverage);
@@ -271,6 +301,7 @@ nlohmann::ordered_json to_json(const PlaneResult& result) {
   nlohmann::ordered_json json;
   json["trajectory"] = to_json(result.trajectory);
   for (const PlaneScore& score : result.scores) json["scores"].push_back(to_json(score));
+  json["supported"] = to_json(result.supported);
   json["planes"] = nlohmann::ordered_json::array();
   for (const TruePlaneRow& row : result.rows) json["planes"].push_back(to_json(row));
   json["angle_deg"] = to_json(result.angle_deg);

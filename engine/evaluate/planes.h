@@ -25,7 +25,10 @@ struct PlaneEvaluationOptions {
   double min_overlap = 0.5;        ///< common area over the smaller of both
   double min_true_area_m2 = 0.05;  ///< smaller true patches need not be found
   double min_seen_share =
-      0.25;             ///< of a true patch in the union of the views, or it need not be found
+      0.25;  ///< of a true patch in the union of the views, or it need not be found
+  /// A true plane that must be found by the third score: so many landmarks lie so near to it.
+  int min_landmarks = 24;
+  double landmark_distance_m = 0.02;
   int grid_cells = 48;  ///< areas are sampled on a grid of so many cells a side
   /// Labels of the true planes that the images show (visibility.h). Without it visibility is judged
   /// by the frustum and the normal alone, which knows no occlusion.
@@ -55,6 +58,7 @@ struct TruePlaneRow {
   std::string plane_class;
   double area_m2 = 0.0;
   bool required = false;  ///< seen and large enough
+  int landmarks = 0;      ///< that lie on it, whoever owns them
   bool matched = false;
   int estimate_id = -1;    ///< -1: no estimate is near
   double angle_deg = 0.0;  ///< between the normals, 180 = flipped
@@ -73,6 +77,9 @@ struct PointLabelScore {
 struct PlaneResult {
   TrajectoryResult trajectory;
   std::array<PlaneScore, 2> scores;
+  /// At the first tolerance, over the true planes that also have PlaneEvaluationOptions's
+  /// min_landmarks: what the map could know.
+  PlaneScore supported;
   std::vector<TruePlaneRow> rows;
   Statistics angle_deg;    ///< of the matches at the first tolerance
   Statistics offset_m;     ///< absolute
@@ -80,11 +87,11 @@ struct PlaneResult {
   PointLabelScore labels;
 };
 
-/// Estimate and truth are aligned by their trajectories; an estimate matches
-/// a true plane if the angle between the normals (which face the cameras: a flipped one is wrong),
-/// the distance of its plane to the true patch's centroid and the overlap allow it; one to one,
-/// largest common area first. `camera` is the true one. Nothing if the trajectories share fewer
-/// than 3 poses.
+/// Estimate and truth are aligned by their trajectories, positions and directions; an estimate
+/// matches a true plane if the angle between the normals (which face the cameras: a flipped one is
+/// wrong), the distance of its plane to the true patch's centroid and the overlap allow it; one to
+/// one, largest common area first. `camera` is the true one. Nothing if the trajectories share
+/// fewer than 3 poses.
 std::optional<PlaneResult> evaluate_planes(const Reconstruction& estimate,
                                            const std::vector<PlaneRecord>& truth,
                                            const std::vector<TimedPose>& truth_poses,

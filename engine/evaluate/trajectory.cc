@@ -19,6 +19,8 @@ using Pairs = std::vector<std::pair<int, int>>;
 /// Below this ratio of the second to the first extent, positions lie on a line.
 constexpr double kStraight = 0.01;
 constexpr double kDegrees = 180.0 / std::numbers::pi;
+/// Where a camera's direction is measured.
+constexpr double kReach_m = 1.0;
 
 std::vector<double> times_of(const std::vector<TimedPose>& poses) {
   std::vector<double> times;
@@ -81,6 +83,28 @@ void measure_rpe(const std::vector<TimedPose>& estimate, const std::vector<Timed
   result.rpe_rotation_deg = statistics_of(rotations_deg);
 }
 
+/// Rigid alignment of positions and directions at the scale that the positions gave.
+slam::Similarity align_poses(const std::vector<TimedPose>& estimate,
+                             const std::vector<TimedPose>& truth, const Pairs& pairs,
+                             double scale) {
+  std::vector<Eigen::Vector3d> source;
+  std::vector<Eigen::Vector3d> target;
+  const auto add = [](slam::Pose pose, double unit_m, std::vector<Eigen::Vector3d>& points) {
+    pose.translation() *= unit_m;
+    points.emplace_back(pose.translation());
+    for (int axis = 0; axis < 3; ++axis) {
+      points.emplace_back(pose * (kReach_m * Eigen::Vector3d::Unit(axis)));
+    }
+  };
+  for (const auto& [e, t] : pairs) {
+    add(estimate[static_cast<std::size_t>(e)].world_from_cam, scale, source);
+    add(truth[static_cast<std::size_t>(t)].world_from_cam, 1.0, target);
+  }
+  slam::Similarity result = slam::align_points(source, target, false);
+  result.scale = scale;
+  return result;
+}
+
 }  // namespace
 
 Pairs associate(const std::vector<TimedPose>& a, const std::vector<TimedPose>& b,
@@ -109,6 +133,8 @@ std::optional<TrajectoryResult> evaluate_trajectory(const std::vector<TimedPose>
   result.pairs = static_cast<int>(pairs.size());
   result.truth_from_estimate =
       slam::align_points(source, target, options.align == Alignment::kSim3);
+  result.truth_from_estimate_by_poses =
+      align_poses(estimate, truth, pairs, result.truth_from_estimate.scale);
   result.nearly_straight = is_nearly_straight(source);
   std::vector<double> distances;
   for (std::size_t i = 0; i < source.size(); ++i) {

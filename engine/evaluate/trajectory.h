@@ -25,6 +25,10 @@ struct TrajectoryResult {
   int estimated = 0;
   int pairs = 0;
   slam::Similarity truth_from_estimate;  ///< least squares over the positions (Umeyama 1991)
+  /// The same with the cameras' directions counted too, each as points 1 m along its axes: what
+  /// the map is compared by, since the positions of a nearly straight path leave a turn about it
+  /// open.
+  slam::Similarity truth_from_estimate_by_poses;
   Statistics ate;              ///< distances of aligned positions (Sturm et al. 2012, section V.B)
   Statistics rpe_translation;  ///< over rpe_delta_s (section V.A); count 0 if no two poses are so
                                ///< far apart

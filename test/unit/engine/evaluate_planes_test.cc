@@ -67,6 +67,20 @@ TEST_F(PlaneEvaluation, TiltIsMeasuredInDegrees) {
   EXPECT_TRUE(result.rows[1].matched);
 }
 
+TEST_F(PlaneEvaluation, PlanesWithoutLandmarksNeedNotBeFound) {
+  EXPECT_EQ(evaluate().supported.truth, 4);
+  EXPECT_EQ(evaluate().rows[1].landmarks, 100);
+  const int lost = estimate.planes[1].id;
+  estimate.planes.erase(estimate.planes.begin() + 1);
+  int kept = 0;
+  std::erase_if(estimate.points, [&](const MapPoint& p) { return p.plane == lost && ++kept > 23; });
+  const PlaneResult result = evaluate();
+  EXPECT_EQ(result.rows[1].landmarks, 23);
+  EXPECT_EQ(result.supported.truth, 3);
+  EXPECT_DOUBLE_EQ(result.supported.f, 1.0);
+  EXPECT_DOUBLE_EQ(result.scores[0].recall, 0.75);
+}
+
 TEST_F(PlaneEvaluation, ScaledMapShowsUnderSe3) {
   PlaneEvaluationOptions options;
   options.trajectory.align = Alignment::kSe3;

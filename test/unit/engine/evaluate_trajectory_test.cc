@@ -129,6 +129,25 @@ TEST(TrajectoryError, TurnedCameraShowsInRotationAlone) {
   EXPECT_NEAR(result->rpe_rotation_deg.median, 2.0, 1e-6);
 }
 
+TEST(TrajectoryError, DirectionsHoldWhatAStraightPathLeavesOpen) {
+  std::vector<TimedPose> truth;
+  for (int i = 0; i < 20; ++i) {
+    // A path with as little to the side as an estimate has noise.
+    truth.push_back({0.1 * i, make_pose({0.0, 0.0, 0.02 * i}, {0.1 * i, 0.001 * (i % 2), 0.0})});
+  }
+  const slam::Pose other_from_world = make_pose({0.3, 0.1, -0.2}, {1.0, 2.0, 3.0});
+  std::vector<TimedPose> estimate = seen_from(other_from_world, 0.25, truth);
+  for (int i = 0; i < 20; ++i) {
+    estimate[i].world_from_cam.translation().z() += 0.001 * ((i / 2) % 2);
+  }
+  const auto result = evaluate_trajectory(estimate, truth);
+  ASSERT_TRUE(result);
+  const Eigen::Matrix3d error =
+      result->truth_from_estimate_by_poses.rotation * other_from_world.linear();
+  EXPECT_LT(Eigen::AngleAxisd(error).angle(), 0.01);
+  EXPECT_NEAR(result->truth_from_estimate_by_poses.scale, 4.0, 0.01);
+}
+
 TEST(TrajectoryError, TooFewPairsAndStraightPaths) {
   const std::vector<TimedPose> line = {at(0, {0, 0, 0}), at(1, {1, 0, 0}), at(2, {2, 0, 0}),
                                        at(3, {3, 0, 0})};
