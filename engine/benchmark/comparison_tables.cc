@@ -8,6 +8,7 @@
 
 #include "engine/benchmark/markdown_table.h"
 #include "engine/benchmark/published.h"
+#include "engine/evaluate/statistics.h"
 #include "engine/output/tables.h"
 
 namespace planecast::engine {
@@ -39,8 +40,9 @@ std::vector<std::string> stage_names(const std::vector<ResultGroup>& groups,
 /// How a variant compares with the first one on the sequences where both have the figure.
 struct Comparison {
   int sequences = 0;
-  int better = 0;           ///< strictly
-  double ratio = 1.0;       ///< geometric mean of the medians' ratios
+  int better = 0;      ///< strictly
+  double ratio = 1.0;  ///< geometric mean of the medians' ratios
+  double median_ratio = 1.0;
   double mean_first = 0.0;  ///< of the first variant's medians
   double mean = 0.0;
 };
@@ -48,7 +50,7 @@ struct Comparison {
 Comparison compare(const std::vector<const ResultGroup*>& groups, const BenchmarkVariant* variant,
                    const BenchmarkVariant* first, const MetricInfo& metric) {
   Comparison result;
-  double sum_of_logs = 0.0;
+  std::vector<double> ratios;
   for (const ResultGroup* base : groups) {
     if (base->variant != first) continue;
     for (const ResultGroup* other : groups) {
@@ -60,13 +62,16 @@ Comparison compare(const std::vector<const ResultGroup*>& groups, const Benchmar
       result.mean_first += a.median;
       result.mean += b.median;
       if (metric.more_is_better ? b.median > a.median : b.median < a.median) ++result.better;
-      sum_of_logs += std::log(std::max(b.median, 1e-9) / std::max(a.median, 1e-9));
+      ratios.push_back(std::max(b.median, 1e-9) / std::max(a.median, 1e-9));
     }
   }
   if (result.sequences == 0) return result;
   result.mean_first /= result.sequences;
   result.mean /= result.sequences;
+  double sum_of_logs = 0.0;
+  for (const double ratio : ratios) sum_of_logs += std::log(ratio);
   result.ratio = std::exp(sum_of_logs / result.sequences);
+  result.median_ratio = statistics_of(ratios).median;
   return result;
 }
 
@@ -112,8 +117,8 @@ std::string ablation_table(const BenchmarkConfig& config, const std::vector<Resu
   if (config.variants.size() < 2) return "";
   const std::vector<const ResultGroup*> groups = groups_of_mode(all, mode);
   const BenchmarkVariant* first = &config.variants.front();
-  MarkdownTable table({"variant", "sequences", "ATE ratio", "ATE better on", "F 5 cm (first)",
-                       "drift ratio", "time ratio"},
+  MarkdownTable table({"variant", "sequences", "ATE ratio", "median", "ATE better on",
+                       "F 5 cm (first)", "drift ratio", "time ratio"},
                       1);
   bool filled = false;
   for (const BenchmarkVariant& variant : config.variants) {
@@ -127,6 +132,7 @@ std::string ablation_table(const BenchmarkConfig& config, const std::vector<Resu
       return c.sequences > 0 ? fmt::format("{:.3f}", c.ratio) : std::string("-");
     };
     table.row({variant.name, std::to_string(time.sequences), ratio(ate),
+               ate.sequences > 0 ? fmt::format("{:.3f}", ate.median_ratio) : "-",
                &variant == first ? "-" : fmt::format("{} of {}", ate.better, ate.sequences),
                f.sequences > 0 ? fmt::format("{:.2f} ({:.2f})", f.mean, f.mean_first) : "-",
                ratio(drift), ratio(time)});

@@ -227,8 +227,8 @@ BenchmarkConfig ConfigReader::read() {
 }  // namespace
 
 const std::vector<std::string>& benchmark_table_names() {
-  static const std::vector<std::string> names = {"ate",     "tracking",  "planes",  "overlay",
-                                                 "timings", "resources", "ablation"};
+  static const std::vector<std::string> names = {"ate",     "tracking", "planes",    "supported",
+                                                 "overlay", "timings",  "resources", "ablation"};
   return names;
 }
 

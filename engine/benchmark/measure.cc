@@ -102,6 +102,9 @@ void measure_planes(const Reconstruction& map, const SequenceTruth& truth,
   metrics["precision_2"] = tight.precision;
   metrics["recall_2"] = tight.recall;
   metrics["f_2"] = tight.f;
+  metrics["supported_planes"] = result->supported.truth;
+  metrics["supported_found"] = result->supported.found;
+  if (result->supported.truth > 0) metrics["f_supported"] = result->supported.f;
   metrics["over_segmented"] = wide.over_segmented;
   metrics["under_segmented"] = wide.under_segmented;
   metrics["false_planes"] = wide.estimated - wide.matched - wide.over_segmented;
