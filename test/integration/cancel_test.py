@@ -28,8 +28,8 @@ def setUpModule():
 
 
 def frame(number, total, work):
-    """The bar of this work at this frame or at most nine later: not every frame is drawn."""
-    shown = "|".join(str(later) for later in range(number, number + 10))
+    """The bar of this work at this frame or not many later: on a fast machine few frames are drawn."""
+    shown = "|".join(str(later) for later in range(number, number + 45))
     return rf"{work} +\[[#.]+\] ({shown})/{total} "
 
 

@@ -15,7 +15,7 @@ from vectors import dot, rotate_back, subtract
 TABLETOP = WORK / "tabletop"
 MONO = WORK / "mono"
 RGBD = WORK / "rgbd"
-FRAMES = 60
+FRAMES = 90
 BLOCK = f"{ROOT}/assets/models/block.glb"
 
 
@@ -83,7 +83,7 @@ class MetricScale(unittest.TestCase):
 
     def check(self, name, scale, place="{plane: largest-horizontal}"):
         text = f"objects:\n  - {{model: {BLOCK}, place: {place}, size: 0.1}}\nscale: {scale}\n"
-        done = render("scale_" + name, text, "--verbose", "--no-progress", "--frames", "0:60")
+        done = render("scale_" + name, text, "--verbose", "--no-progress", "--frames", f"0:{FRAMES}")
         found = re.search(r"scale: (\S+) map units a metre", done.stdout + done.stderr)
         self.assertTrue(found, done.stdout + done.stderr)
         self.assertAlmostEqual(float(found.group(1)) / self.units_per_metre, 1.0, delta=0.03)
@@ -134,13 +134,13 @@ class Places(unittest.TestCase):
             f"  - poster: {{image: {still}, width: 0.2}}\n"
             "    place: {plane: largest-horizontal, at: [0.3, 0.6]}\n")
         done = render("places", text)
-        self.assertRegex(done.stdout + done.stderr, r"content is in view in 60 of 60 frames")
+        self.assertRegex(done.stdout + done.stderr, r"content is in view in 90 of 90 frames")
         self.assertIn(b"object base", (WORK / "places" / "scene.glb").read_bytes())
 
     def frames_with_content(self, name, reconstruction):
         text = f"objects:\n  - {{model: {BLOCK}, place: {{frame: 55, pixel: [60, 60]}}}}\n"
         done = render(name, text, "--causal", reconstruction=reconstruction)
-        found = re.search(r"content is in view in (\d+) of 60 frames", done.stdout + done.stderr)
+        found = re.search(r"content is in view in (\d+) of 90 frames", done.stdout + done.stderr)
         self.assertTrue(found, done.stdout + done.stderr)
         return int(found.group(1))
 
