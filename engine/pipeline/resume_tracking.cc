@@ -25,7 +25,8 @@ std::string key_of(const Sequence& sequence, const TrackSequenceOptions& options
       sequence.first_frame(), sequence.end_frame(), camera_json(sequence.camera()).dump(),
       options.seed, options.mode, options.segmentation, options.network, options.plane_merge,
       options.plane_fit, options.map_planes, options.refine_jointly, options.features);
-  if (options.up) key += fmt::format("up {} {} {}\n", options.up->x(), options.up->y(), options.up->z());
+  if (options.up)
+    key += fmt::format("up {} {} {}\n", options.up->x(), options.up->y(), options.up->z());
   if (options.causal) key += "causal\n";
   if (options.skip_unreadable) key += "skip unreadable\n";
   if (!options.close_loops) key += "no loops\n";

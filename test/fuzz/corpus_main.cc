@@ -9,8 +9,8 @@
 #include "engine/sequence/image_file.h"
 #include "test/fuzz/target.h"
 
-/// Runs readers over the files of their corpora: fuzz_corpus FOLDER [TARGET...], where FOLDER holds one
-/// folder for each target. What fuzzing has found stays found.
+/// Runs readers over the files of their corpora: fuzz_corpus FOLDER [TARGET...], where FOLDER holds
+/// one folder for each target. What fuzzing has found stays found.
 namespace {
 
 using namespace planecast;

@@ -5,7 +5,8 @@
 #include "engine/sequence/image_file.h"
 #include "test/fuzz/target.h"
 
-/// libFuzzer's entries, one executable for all readers: PLANECAST_FUZZ in the environment names the one.
+/// libFuzzer's entries, one executable for all readers: PLANECAST_FUZZ in the environment names the
+/// one.
 namespace {
 
 const planecast::fuzz::Target* chosen = nullptr;

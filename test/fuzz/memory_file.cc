@@ -27,9 +27,8 @@ struct Folder {
 const std::string& memory_file(std::string_view bytes) {
   static const int file = memfd_create("planecast_fuzz", 0);
   static const std::string path = "/proc/self/fd/" + std::to_string(file);
-  const bool written = ftruncate(file, 0) == 0 &&
-                       pwrite(file, bytes.data(), bytes.size(), 0) ==
-                           static_cast<ssize_t>(bytes.size());
+  const bool written = ftruncate(file, 0) == 0 && pwrite(file, bytes.data(), bytes.size(), 0) ==
+                                                      static_cast<ssize_t>(bytes.size());
   if (!written) std::abort();
   return path;
 }

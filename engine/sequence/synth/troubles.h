@@ -11,12 +11,12 @@ namespace planecast::engine::synth {
 
 /// What makes a recording hard, on top of any scene.
 struct Trouble {
-  double shutter_s = 0.0;        ///< motion blur; 0: the scene's own
+  double shutter_s = 0.0;       ///< motion blur; 0: the scene's own
   double speed = 1.0;           ///< of the camera along its path
-  bool exposure_jumps = false;   ///< the gain changes at once, by up to 3.5 times
-  double readout_s = 0.0;        ///< rolling shutter: from the first row to the last
-  bool passer = false;           ///< something near moves across the view
-  double dropped_share = 0.0;    ///< of the frames, beside a gap now and then
+  bool exposure_jumps = false;  ///< the gain changes at once, by up to 3.5 times
+  double readout_s = 0.0;       ///< rolling shutter: from the first row to the last
+  bool passer = false;          ///< something near moves across the view
+  double dropped_share = 0.0;   ///< of the frames, beside a gap now and then
 };
 
 /// none, blur, exposure, rolling-shutter, moving, dropped.
@@ -32,8 +32,8 @@ class Passer {
  public:
   explicit Passer(std::uint64_t seed);
 
-  /// Draws it into the pictures of `camera` (8-bit BGR, 8-bit labels, CV_32F depth in metres), where
-  /// it is nearer than what they show. It has no label.
+  /// Draws it into the pictures of `camera` (8-bit BGR, 8-bit labels, CV_32F depth in metres),
+  /// where it is nearer than what they show. It has no label.
   void draw(const CameraPath& path, const slam::Camera& camera, double time_s, cv::Mat& bgr,
             cv::Mat& labels, cv::Mat& depth_m) const;
 

@@ -47,8 +47,9 @@ TEST(SynthTroubles, NoneIsTheSequenceAsItWas) {
   EXPECT_EQ(file_bytes(folder.path() / "a/rgb/0.000000.png"),
             file_bytes(folder.path() / "b/rgb/0.000000.png"));
   options.trouble = "flood";
-  EXPECT_NE(user_error([&] { write_synthetic(options, folder.path() / "c", nullptr); })
-                .find("rolling-shutter"),
+  EXPECT_NE(user_error([&] {
+              write_synthetic(options, folder.path() / "c", nullptr);
+            }).find("rolling-shutter"),
             std::string::npos);
 }
 
@@ -92,7 +93,8 @@ TEST(SynthTroubles, ARollingShutterDiffersButInTheMiddleRows) {
   const auto global = make(options, folder.path() / "b");
   const cv::Mat difference = cv::abs(rolled->read(2).depth - global->read(2).depth);
   const double middle = cv::mean(difference.rowRange(33, 39))[0];
-  const double ends = cv::mean(difference.rowRange(0, 6))[0] + cv::mean(difference.rowRange(66, 72))[0];
+  const double ends =
+      cv::mean(difference.rowRange(0, 6))[0] + cv::mean(difference.rowRange(66, 72))[0];
   EXPECT_GT(ends, 2.0 * middle);
 }
 
