@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <set>
 
+#include "engine/channels.h"
 #include "engine/marker_dictionary.h"
 #include "engine/user_error.h"
 
@@ -20,13 +21,6 @@ cv::Ptr<cv::aruco::Dictionary> dictionary_named(const std::string& name) {
   if (const auto dictionary = marker_dictionary(name)) return dictionary;
   throw UserError(fmt::format("{}: no such dictionary of markers ({})", name,
                               fmt::join(marker_dictionary_names(), ", ")));
-}
-
-cv::Mat to_grey(const cv::Mat& image) {
-  if (image.channels() == 1) return image;
-  cv::Mat grey;
-  cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
-  return grey;
 }
 
 /// Corners of one row or column alone say nothing of the plane.

@@ -11,6 +11,7 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
+#include "engine/channels.h"
 #include "engine/evaluate/trajectory.h"
 #include "engine/scene/hit_test.h"
 #include "engine/scene/placement.h"
@@ -27,11 +28,7 @@ using PictureSizes = std::array<cv::Mat, 3>;
 
 PictureSizes to_pictures(const cv::Mat& image) {
   PictureSizes pictures;
-  if (image.channels() == 1) {
-    pictures[0] = image;
-  } else {
-    cv::cvtColor(image, pictures[0], cv::COLOR_BGR2GRAY);
-  }
+  pictures[0] = to_grey(image);
   for (std::size_t i = 1; i < pictures.size(); ++i) {
     cv::resize(pictures[i - 1], pictures[i], cv::Size(), 0.5, 0.5, cv::INTER_AREA);
   }

@@ -1,6 +1,7 @@
 #include "engine/inspect/frame_pictures.h"
 
 #include "engine/assets.h"
+#include "engine/channels.h"
 #include "engine/user_error.h"
 
 namespace planecast::engine {

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <opencv2/imgproc.hpp>
 
+#include "engine/channels.h"
 #include "engine/convert.h"
 #include "engine/look/camera_blur.h"
 #include "engine/look/depth_edges.h"
@@ -30,13 +31,6 @@ class StopWatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-cv::Mat to_grey(const cv::Mat& image) {
-  if (image.channels() == 1) return image;
-  cv::Mat grey;
-  cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
-  return grey;
-}
-
 render::RendererOptions renderer_options(const PainterOptions& options) {
   render::RendererOptions result;
   result.shader_dir = options.shader_dir.string();
@@ -51,13 +45,6 @@ slam::Camera drawing_camera(slam::Camera camera, bool lens) {
 }
 
 }  // namespace
-
-cv::Mat to_bgr(const cv::Mat& image) {
-  if (image.channels() == 3) return image.clone();
-  cv::Mat bgr;
-  cv::cvtColor(image, bgr, cv::COLOR_GRAY2BGR);
-  return bgr;
-}
 
 FramePainter::FramePainter(const Reconstruction& reconstruction, const Content& content,
                            const LightTrack& light, const PainterOptions& options)

@@ -71,7 +71,4 @@ class FramePainter {
   bool by_processor_ = false;
 };
 
-/// 8-bit BGR copy of a grey or colour image.
-cv::Mat to_bgr(const cv::Mat& image);
-
 }  // namespace planecast::engine

@@ -9,6 +9,7 @@
 
 #include "engine/assets.h"
 #include "engine/cancel.h"
+#include "engine/channels.h"
 #include "engine/look/debug_overlay.h"
 #include "engine/output/atomic_file.h"
 #include "engine/output/match_move.h"

@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <future>
 #include <memory>
 #include <utility>
 
 #include "engine/assets.h"
 #include "engine/cancel.h"
 #include "engine/pipeline/earlier_map.h"
+#include "engine/pipeline/frames_ahead.h"
+#include "engine/pipeline/map_change_recorder.h"
 #include "engine/pipeline/map_to_records.h"
 #include "engine/scene/plane_classes.h"
 #include "engine/segmentation/choose_segmenter.h"
@@ -71,76 +72,6 @@ slam::SystemOptions system_options(const TrackSequenceOptions& options, bool rgb
   return result;
 }
 
-/// Reads and prepares frames one ahead of the one in use, on a second thread where allowed. Whether
-/// the map was initialised is known two frames late, always, so that threads change nothing.
-class FramesAhead {
- public:
-  FramesAhead(Sequence& sequence, const slam::System& system, bool threaded)
-      : sequence_(sequence), system_(system), threaded_(threaded) {}
-
-  struct Prepared {
-    std::optional<slam::ImageFeatures> image;  ///< nothing: unreadable
-    std::string error;
-  };
-
-  void request(int index, bool initialised) {
-    next_ = std::async(threaded_ ? std::launch::async : std::launch::deferred,
-                       [this, index, initialised] { return prepare(index, initialised); });
-  }
-  Prepared take() { return next_.get(); }
-
- private:
-  Prepared prepare(int index, bool initialised) const {
-    Prepared prepared;
-    try {
-      prepared.image = system_.prepare(sequence_.read(index), initialised);
-    } catch (const UserError& error) {
-      prepared.error = error.what();
-    }
-    return prepared;
-  }
-
-  Sequence& sequence_;
-  const slam::System& system_;
-  bool threaded_;
-  std::future<Prepared> next_;
-};
-
-std::vector<KnownPlane> known_planes(const slam::Map& map) {
-  std::vector<KnownPlane> planes;
-  for (const slam::Plane& plane : map.planes) {
-    if (!plane.weak) planes.push_back({plane.id, plane.world_from_plane()});
-  }
-  return planes;
-}
-
-using KeyframePoses = std::map<slam::KeyframeId, slam::Pose>;
-
-/// Keyframes that are new or have another pose than in `poses`, which takes the present ones.
-std::vector<KnownKeyframe> moved_keyframes(const slam::Map& map, slam::KeyframeId first,
-                                           KeyframePoses& poses) {
-  std::vector<KnownKeyframe> moved;
-  for (const slam::Keyframe& keyframe : map.keyframes) {
-    if (keyframe.id < first) continue;
-    const auto [known, is_new] = poses.try_emplace(keyframe.id, keyframe.cam_from_world);
-    if (!is_new && known->second.matrix() == keyframe.cam_from_world.matrix()) continue;
-    known->second = keyframe.cam_from_world;
-    moved.push_back({keyframe.frame_index, keyframe.cam_from_world.inverse()});
-  }
-  return moved;
-}
-
-/// Whether a map change did anything to what stands on the planes.
-bool changed(const std::vector<KnownPlane>& before, const MapChange& change) {
-  const bool same_planes =
-      std::ranges::equal(before, change.planes, [](const KnownPlane& a, const KnownPlane& b) {
-        return a.id == b.id && a.world_from_plane.matrix() == b.world_from_plane.matrix();
-      });
-  if (!same_planes) return true;
-  constexpr double kRounding = 1e-9;
-  return !before.empty() && !change.new_from_old_world.isApprox(slam::Pose::Identity(), kRounding);
-}
-
 /// One frame of the first pass, as the second needs it.
 struct Tracked {
   slam::KeyframeId reference = slam::kNone;
@@ -166,6 +97,7 @@ class TwoPassTracker {
     if (earlier_.map != nullptr) {
       system_.load(*earlier_.map);
       first_own_keyframe_ = earlier_.map->keyframes.next_id();
+      map_changes_.start_at(first_own_keyframe_);
     }
   }
 
@@ -190,7 +122,7 @@ class TwoPassTracker {
   void smooth();
   void mend(std::size_t begin, std::vector<slam::PathPose>& path);
   void record_first(int position, const slam::FrameTrack& track);
-  void record_map_change(int position);
+  slam::Pose new_from_old_world(int position) const;
   Reconstruction records();
 
   Sequence& sequence_;
@@ -206,8 +138,7 @@ class TwoPassTracker {
   std::vector<Tracked> tracked_;
   std::vector<std::optional<slam::PathPose>> localised_;  ///< in the second pass
   std::vector<StageTimes> times_;
-  std::vector<MapChange> map_changes_;
-  KeyframePoses known_keyframes_;  ///< as of the last of the changes
+  MapChangeRecorder map_changes_;
   std::map<std::string, std::vector<double>> mapping_times_;
   slam::JointResult joint_;
   std::string stopped_;  ///< why the frames end before the sequence
@@ -230,34 +161,23 @@ void TwoPassTracker::record_first(int position, const slam::FrameTrack& track) {
       frames_[q].causal_world_from_cam.reset();
     }
     map_changes_.clear();
-    known_keyframes_.clear();
   }
-  record_map_change(position);
+  map_changes_.record(system_.map(), first_ + position, new_from_old_world(position));
   if (!track.cam_from_world) return;
   record.causal_world_from_cam = track.cam_from_world->inverse();
   tracked_[p] = {track.reference, track.cam_from_reference};
 }
 
-/// What a change of the map did to the planes and, by way of the last tracked frame, to the camera.
-void TwoPassTracker::record_map_change(int position) {
-  MapChange change;
-  change.frame_index = first_ + position;
-  change.planes = known_planes(system_.map());
+/// What the map's change at this frame did to the camera of the last tracked frame before.
+slam::Pose TwoPassTracker::new_from_old_world(int position) const {
   for (int before = position - 1; before >= 0; --before) {
     const auto p = static_cast<std::size_t>(before);
     if (!frames_[p].causal_world_from_cam || tracked_[p].reference == slam::kNone) continue;
-    change.new_from_old_world =
-        system_.map()
-            .from_keyframe(tracked_[p].cam_from_reference, tracked_[p].reference)
-            .inverse() *
-        frames_[p].causal_world_from_cam->inverse();
-    break;
+    const slam::Pose cam_from_new_world =
+        system_.map().from_keyframe(tracked_[p].cam_from_reference, tracked_[p].reference);
+    return cam_from_new_world.inverse() * frames_[p].causal_world_from_cam->inverse();
   }
-  const std::vector<KnownPlane> before =
-      map_changes_.empty() ? std::vector<KnownPlane>{} : map_changes_.back().planes;
-  if (!changed(before, change)) return;
-  change.keyframes = moved_keyframes(system_.map(), first_own_keyframe_, known_keyframes_);
-  map_changes_.push_back(std::move(change));
+  return slam::Pose::Identity();
 }
 
 void TwoPassTracker::first_pass() {
@@ -449,7 +369,7 @@ Reconstruction TwoPassTracker::records() {
                                 joint_.kept ? joint_.plane_rms_after : joint_.plane_rms_before};
   }
   result.frames = std::move(frames_);
-  result.map_changes = std::move(map_changes_);
+  result.map_changes = map_changes_.take();
   result.frame_times = std::move(times_);
   result.mapping_times = std::move(mapping_times_);
   result.warnings = sequence_.warnings();

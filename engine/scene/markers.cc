@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <set>
 
+#include "engine/channels.h"
 #include "engine/marker_dictionary.h"
 #include "engine/scene/hit_test.h"
 #include "engine/scene/plane_outline.h"
@@ -132,13 +133,6 @@ std::optional<FoundMarker> locate(const Reconstruction& reconstruction,
   return found;
 }
 
-cv::Mat grey_picture(const cv::Mat& image) {
-  if (image.channels() == 1) return image;
-  cv::Mat grey;
-  cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
-  return grey;
-}
-
 void look(const cv::Mat& image, const std::string& dictionary, const slam::Camera& camera,
           const slam::Pose& world_from_cam, std::map<MarkerId, std::vector<View>>& views) {
   const auto parameters = cv::aruco::DetectorParameters::create();
@@ -197,7 +191,7 @@ MarkerMap find_markers(Sequence& sequence, const Reconstruction& reconstruction,
   for (std::size_t i = 0; i < count; ++i) {
     const FrameRecord& frame = *posed[i * posed.size() / count];
     try {
-      const cv::Mat grey = grey_picture(sequence.read(frame.index).image);
+      const cv::Mat grey = to_grey(sequence.read(frame.index).image);
       for (const std::string& dictionary : dictionaries) {
         look(grey, dictionary, reconstruction.camera, *frame.world_from_cam, views);
       }

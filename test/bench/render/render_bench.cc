@@ -4,13 +4,10 @@
 // same run on the same machine, and where the time goes. With two threads, two renderers share the
 // frames. On a machine that does other things too, processor time says what wall time cannot.
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <filesystem>
 #include <memory>
-#include <opencv2/features2d.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
@@ -20,6 +17,7 @@
 #include "bench_scene.h"
 #include "engine/look/object_layer.h"
 #include "render/renderer.h"
+#include "test/bench/orb_call.h"
 
 namespace planecast::bench {
 namespace {
@@ -29,14 +27,6 @@ constexpr int kRounds = 5;
 constexpr int kFramesPerRound = 20;
 constexpr int kExtractionsPerRound = 7;
 constexpr int kWarmUp = 4;
-
-double now_ms() {
-  return std::chrono::duration<double, std::milli>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
-double cpu_ms() { return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// Blobs and lines of many sizes, so that ORB finds its thousand features.
 cv::Mat procedural_frame() {
@@ -63,31 +53,17 @@ cv::Mat test_frame(const std::string& path) {
   return frame;
 }
 
-struct Cost {
-  double wall_ms = 0.0;
-  double cpu_ms = 0.0;  ///< of all threads
-};
-
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
-}
+double median(const std::vector<double>& values) { return quantile(values, 0.5); }
 
 /// What the figures are compared with: one thread, 1000 features.
 Cost orb_cost(const cv::Mat& frame) {
-  cv::Mat grey;
-  cv::cvtColor(frame, grey, cv::COLOR_BGR2GRAY);
-  const auto orb = cv::ORB::create(1000);
+  OrbCall orb;
   std::vector<double> wall;
   std::vector<double> cpu;
   for (int i = 0; i < kExtractionsPerRound; ++i) {
-    std::vector<cv::KeyPoint> keypoints;
-    cv::Mat descriptors;
-    const double begin = now_ms();
-    const double cpu_begin = cpu_ms();
-    orb->detectAndCompute(grey, cv::noArray(), keypoints, descriptors);
-    wall.push_back(now_ms() - begin);
-    cpu.push_back(cpu_ms() - cpu_begin);
+    const Cost call = orb.measure(frame);
+    wall.push_back(call.wall_ms);
+    cpu.push_back(call.cpu_ms);
   }
   return {median(wall), median(cpu)};
 }
@@ -123,7 +99,7 @@ class Frames {
 
   /// The mean of the next frames.
   Cost draw_next(int count) {
-    const double begin = now_ms();
+    const double begin = wall_ms();
     const double cpu = cpu_ms();
     std::vector<std::thread> workers;
     for (std::size_t t = 0; t < renderers_.size(); ++t) {
@@ -131,7 +107,7 @@ class Frames {
     }
     for (std::thread& worker : workers) worker.join();
     next_ += count;
-    return {(now_ms() - begin) / count, (cpu_ms() - cpu) / count};
+    return {(wall_ms() - begin) / count, (cpu_ms() - cpu) / count};
   }
 
  private:
@@ -172,10 +148,10 @@ void report_passes(const render::LayerScene& scene, const cv::Mat& video, const 
   constexpr int kTimed = 40;
   for (int i = 0; i < kTimed; ++i) {
     render::Layer layer = renderer.draw_layer(scene, camera_at(i));
-    const double begin = now_ms();
+    const double begin = wall_ms();
     video.copyTo(picture);
     engine::composite(engine::view_layer(layer), picture);
-    composite_ms += now_ms() - begin;
+    composite_ms += wall_ms() - begin;
   }
   for (const auto& [pass, ms] : renderer.pass_times_ms()) {
     std::printf("    %-20s %6.2f ms\n", pass.c_str(), ms / kTimed);

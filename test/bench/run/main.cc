@@ -2,45 +2,31 @@
 // cv::ORB::detectAndCompute (1000 features) on the same pictures, before and after: the ratio holds
 // on any machine. Usage: bench_run PLANECAST SEQUENCE SCENE OUT [CAMERA]. Prints Markdown.
 
-#include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <exception>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
-#include <opencv2/features2d.hpp>
-#include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "engine/sequence/sequence.h"
+#include "test/bench/orb_call.h"
 
-namespace planecast {
+namespace planecast::bench {
 namespace {
 
 constexpr int kCalls = 400;
 
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 double orb_seconds(engine::Sequence& sequence) {
-  const cv::Ptr<cv::ORB> orb = cv::ORB::create(1000);
+  OrbCall orb;
   const int frames = sequence.end_frame() - sequence.first_frame();
-  double seconds = 0.0;
+  double ms = 0.0;
   for (int i = 0; i < kCalls; ++i) {
-    const cv::Mat image = sequence.read(sequence.first_frame() + i % frames).image;
-    cv::Mat grey = image;
-    if (image.channels() == 3) cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
-    std::vector<cv::KeyPoint> corners;
-    cv::Mat descriptors;
-    const double begin = now_s();
-    orb->detectAndCompute(grey, cv::noArray(), corners, descriptors);
-    seconds += now_s() - begin;
+    ms += orb.measure(sequence.read(sequence.first_frame() + i % frames).image).wall_ms;
   }
-  return seconds;
+  return 1e-3 * ms;
 }
 
 struct Run {
@@ -54,7 +40,7 @@ Run time_run(const std::vector<std::string>& arguments) {
   std::string command;
   for (const std::string& argument : arguments) command += quoted(argument) + " ";
   Run run;
-  const double begin = now_s();
+  const double begin = wall_ms();
   FILE* pipe = popen((command + "2>&1").c_str(), "r");
   if (pipe == nullptr) throw std::runtime_error("cannot start " + arguments.front());
   char line[512];
@@ -63,7 +49,7 @@ Run time_run(const std::vector<std::string>& arguments) {
     if (text.find(" ms a frame") != std::string::npos) run.steps.push_back(text);
   }
   const int status = pclose(pipe);
-  run.seconds = now_s() - begin;
+  run.seconds = 1e-3 * (wall_ms() - begin);
   if (status != 0) throw std::runtime_error("the run failed: " + command);
   return run;
 }
@@ -110,11 +96,11 @@ int run(int count, char** arguments) {
 }
 
 }  // namespace
-}  // namespace planecast
+}  // namespace planecast::bench
 
 int main(int count, char** arguments) {
   try {
-    return planecast::run(count, arguments);
+    return planecast::bench::run(count, arguments);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 2;

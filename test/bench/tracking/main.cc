@@ -2,36 +2,21 @@
 // so that the ratio holds on any machine. Usage: bench_tracking SEQUENCE [mono|rgbd] [CAMERA]
 // Prints Markdown.
 
-#include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <exception>
 #include <map>
 #include <opencv2/core.hpp>
-#include <opencv2/features2d.hpp>
-#include <opencv2/imgproc.hpp>
 #include <string>
 #include <vector>
 
 #include "engine/sequence/sequence.h"
 #include "slam/system.h"
+#include "test/bench/orb_call.h"
 
-namespace planecast {
+namespace planecast::bench {
 namespace {
 
 using Times = std::map<std::string, std::vector<double>>;
-
-double now_ms() {
-  return std::chrono::duration<double, std::milli>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-}
 
 void print(const char* name, const std::vector<double>& times, double orb_ms) {
   const double median = quantile(times, 0.5);
@@ -45,17 +30,11 @@ Times measure(engine::Sequence& sequence, bool rgbd) {
   options.rgbd = rgbd;
   options.threads = 1;
   slam::System system(options, sequence.camera(), slam::make_no_segmenter());
-  const cv::Ptr<cv::ORB> orb = cv::ORB::create(1000);
+  OrbCall orb;
   Times times;
   for (int i = sequence.first_frame(); i < sequence.end_frame(); ++i) {
     const slam::FrameInput frame = sequence.read(i);
-    cv::Mat grey = frame.image;
-    if (grey.channels() == 3) cv::cvtColor(frame.image, grey, cv::COLOR_BGR2GRAY);
-    std::vector<cv::KeyPoint> corners;
-    cv::Mat descriptors;
-    const double begin = now_ms();
-    orb->detectAndCompute(grey, cv::noArray(), corners, descriptors);
-    times["ORB"].push_back(now_ms() - begin);
+    times["ORB"].push_back(orb.measure(frame.image).wall_ms);
 
     const slam::FrameTrack track = system.track(system.prepare(frame, system.initialised()));
     for (const auto& [stage, ms] : track.times) times[stage].push_back(ms);
@@ -82,11 +61,11 @@ int run(int count, char** arguments) {
 }
 
 }  // namespace
-}  // namespace planecast
+}  // namespace planecast::bench
 
 int main(int count, char** arguments) {
   try {
-    return planecast::run(count, arguments);
+    return planecast::bench::run(count, arguments);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 2;

@@ -2,6 +2,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "engine/channels.h"
 #include "engine/sequence/image_file.h"
 #include "engine/sequence/sequence.h"
 #include "engine/sequence/synth.h"
@@ -25,14 +26,26 @@ std::unique_ptr<Sequence> make(const SynthOptions& options, const std::filesyste
   return open_sequence(folder, {});
 }
 
+/// The sequence with its trouble, and without.
+struct Both {
+  std::unique_ptr<Sequence> with;
+  std::unique_ptr<Sequence> without;
+};
+
+Both make_both(SynthOptions options, const std::filesystem::path& folder) {
+  Both both;
+  both.with = make(options, folder / "a");
+  options.trouble = "none";
+  both.without = make(options, folder / "b");
+  return both;
+}
+
 double brightness(const cv::Mat& image) { return cv::mean(image)[1]; }
 
 /// Mean absolute second difference along the rows: what blur takes away.
 double sharpness(const cv::Mat& image) {
-  cv::Mat grey;
-  cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
   cv::Mat edges;
-  cv::Laplacian(grey, edges, CV_32F);
+  cv::Laplacian(to_grey(image), edges, CV_32F);
   return cv::mean(cv::abs(edges))[0];
 }
 
@@ -70,9 +83,7 @@ TEST(SynthTroubles, AMovingCameraIsBlurred) {
   options.height = 240;
   options.fps = 2.0;
   options.frames = 4;
-  const auto blurred = make(options, folder.path() / "a");
-  options.trouble = "none";
-  const auto sharp = make(options, folder.path() / "b");
+  const auto [blurred, sharp] = make_both(options, folder.path());
   double a = 0.0;
   double b = 0.0;
   for (int i = 0; i < options.frames; ++i) {
@@ -88,9 +99,7 @@ TEST(SynthTroubles, ARollingShutterDiffersButInTheMiddleRows) {
   options.effects = false;
   options.fps = 1.0;
   options.frames = 3;
-  const auto rolled = make(options, folder.path() / "a");
-  options.trouble = "none";
-  const auto global = make(options, folder.path() / "b");
+  const auto [rolled, global] = make_both(options, folder.path());
   const cv::Mat difference = cv::abs(rolled->read(2).depth - global->read(2).depth);
   const double middle = cv::mean(difference.rowRange(33, 39))[0];
   const double ends =

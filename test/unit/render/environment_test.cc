@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 
+#include "ball.h"
 #include "render/renderer.h"
 #include "render_test_tools.h"
 
@@ -118,25 +119,6 @@ LayerScene lit_by(const Material& material, const Environment& environment,
   return scene;
 }
 
-/// Calls visit(u, v, normal, ray) for pixels on the ball.
-template <typename Visit>
-void over_the_ball(const Camera& camera, const Visit& visit) {
-  int count = 0;
-  for (int v = 130; v <= 350; v += 10) {
-    for (int u = 210; u <= 430; u += 10) {
-      const glm::vec3 ray =
-          glm::normalize(glm::vec3((static_cast<float>(u) - camera.cx) / camera.fx,
-                                   (static_cast<float>(v) - camera.cy) / camera.fy, 1.0F));
-      const float along = 2.0F * ray.z;
-      const float inside = along * along - (4.0F - 0.25F);
-      if (inside < 0.02F) continue;
-      visit(u, v, ((along - std::sqrt(inside)) * ray - glm::vec3(0, 0, 2)) / 0.5F, ray);
-      ++count;
-    }
-  }
-  ASSERT_GT(count, 100);
-}
-
 /// The world's y runs down in these pictures.
 const glm::mat3 kUpright(glm::vec3(1, 0, 0), glm::vec3(0, -1, 0), glm::vec3(0, 0, -1));
 
@@ -149,7 +131,7 @@ TEST(EnvironmentLight, LambertianSphereUnderAHalfSkyIsWithinOnePerCent) {
   Renderer renderer(test::renderer_options());
   const Camera camera;
   const Layer layer = renderer.draw_layer(lit_by(matt, sky, kUpright), camera);
-  over_the_ball(camera, [&](int u, int v, const glm::vec3& n, const glm::vec3&) {
+  test::over_the_ball(camera, [&](int u, int v, const glm::vec3& n, const glm::vec3&) {
     const float expected = 0.8F * 0.9F * 0.5F * (1.0F - n.y);
     const float half_level = 0.5F * (linear(200) - linear(199));
     EXPECT_NEAR(linear(test::at(layer.rgba, u, v, 1)), expected, 0.01F * expected + half_level);
@@ -165,7 +147,7 @@ TEST(EnvironmentLight, NothingIsLostOrGainedInAWhiteFurnace) {
     metal.metallic = 1.0F;
     metal.roughness = roughness;
     const Layer layer = renderer.draw_layer(lit_by(metal, white, kUpright), camera);
-    over_the_ball(camera, [&](int u, int v, const glm::vec3&, const glm::vec3&) {
+    test::over_the_ball(camera, [&](int u, int v, const glm::vec3&, const glm::vec3&) {
       EXPECT_NEAR(linear(test::at(layer.rgba, u, v, 1)), 0.5F, 0.01F) << roughness;
     });
   }
@@ -180,7 +162,7 @@ TEST(EnvironmentLight, AMirrorShowsTheSurroundings) {
   Renderer renderer(test::renderer_options());
   const Camera camera;
   const Layer layer = renderer.draw_layer(lit_by(mirror, ramp, kUpright), camera);
-  over_the_ball(camera, [&](int u, int v, const glm::vec3& n, const glm::vec3& ray) {
+  test::over_the_ball(camera, [&](int u, int v, const glm::vec3& n, const glm::vec3& ray) {
     const glm::vec3 seen = kUpright * glm::reflect(ray, n);
     for (int c = 0; c < 3; ++c) {
       EXPECT_NEAR(linear(test::at(layer.rgba, u, v, c)), 0.4F + 0.3F * seen[c], 0.015F);

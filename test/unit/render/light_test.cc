@@ -3,6 +3,7 @@
 #include <array>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "ball.h"
 #include "render/gltf/simplify.h"
 #include "render_test_tools.h"
 
@@ -92,26 +93,16 @@ TEST(KnownLight, LambertianSphereIsWithinOnePerCentOfTheIntegral) {
   const Layer layer = renderer.draw_layer(scene, camera);
   double error = 0.0;
   int count = 0;
-  for (int v = 140; v <= 340; v += 20) {
-    for (int u = 220; u <= 420; u += 20) {
-      // The ray of the pixel meets the sphere of radius 0.5 at (0, 0, 2).
-      const glm::vec3 ray =
-          glm::normalize(glm::vec3((static_cast<float>(u) - camera.cx) / camera.fx,
-                                   (static_cast<float>(v) - camera.cy) / camera.fy, 1.0F));
-      const float along = 2.0F * ray.z;
-      const float inside = along * along - (4.0F - 0.25F);
-      if (inside < 0.02F) continue;
-      const glm::vec3 n = ((along - std::sqrt(inside)) * ray - glm::vec3(0, 0, 2)) / 0.5F;
-      const glm::vec3 expected = albedo * irradiance_over_pi(scene.light.ambient_sh, n);
-      for (int c = 0; c < 3; ++c) {
-        const float found = linear(at(layer.rgba, u, v, c));
-        EXPECT_NEAR(found, expected[c], 0.01F * expected[c] + half_level(expected[c]))
-            << u << " " << v << " " << c;
-        error += std::abs(found - expected[c]) / expected[c];
-        ++count;
-      }
+  test::over_the_ball(camera, [&](int u, int v, const glm::vec3& n, const glm::vec3&) {
+    const glm::vec3 expected = albedo * irradiance_over_pi(scene.light.ambient_sh, n);
+    for (int c = 0; c < 3; ++c) {
+      const float found = linear(at(layer.rgba, u, v, c));
+      EXPECT_NEAR(found, expected[c], 0.01F * expected[c] + half_level(expected[c]))
+          << u << " " << v << " " << c;
+      error += std::abs(found - expected[c]) / expected[c];
+      ++count;
     }
-  }
+  });
   ASSERT_GT(count, 200);
   EXPECT_LT(error / count, 0.01);
 }
