@@ -4,6 +4,7 @@
 #include <system_error>
 #include <vector>
 
+#include "engine/program.h"
 #include "engine/user_error.h"
 
 namespace planecast::engine {
@@ -18,15 +19,12 @@ fs::path assets_dir() {
     return from_environment;
   }
   std::vector<fs::path> candidates;
-  const fs::path executable = fs::read_symlink("/proc/self/exe", ignored);
-  if (!executable.empty()) {
-    const fs::path folder = executable.parent_path();
-    candidates.push_back(folder / "assets");
-    candidates.push_back(folder.parent_path() / "assets");
-    candidates.push_back(folder.parent_path() / "share" / "planecast" / "assets");
-    // An executable in <source>/build/<preset>.
-    candidates.push_back(folder.parent_path().parent_path() / "assets");
-  }
+  const fs::path folder = executable_folder();
+  candidates.push_back(folder / "assets");
+  candidates.push_back(folder.parent_path() / "assets");
+  candidates.push_back(folder.parent_path() / "share" / "planecast" / "assets");
+  // An executable in <source>/build/<preset>.
+  candidates.push_back(folder.parent_path().parent_path() / "assets");
 #ifdef PLANECAST_SOURCE_DIR
   candidates.push_back(fs::path(PLANECAST_SOURCE_DIR) / "assets");
 #endif

@@ -16,12 +16,11 @@
 #include <fstream>
 
 #include "engine/cancel.h"
+#include "engine/program.h"
 #include "engine/user_error.h"
 
 namespace planecast::engine {
 namespace {
-
-constexpr const char* kThisExecutable = "/proc/self/exe";
 
 /// A child begins as a copy of this process, whose highest mark would count as the child's own:
 /// brings the mark down to what is in use now.
@@ -68,9 +67,11 @@ pid_t start(const std::vector<std::string>& arguments, const std::filesystem::pa
   std::vector<char*> argv = {name.data()};
   for (std::string& argument : copies) argv.push_back(argument.data());
   argv.push_back(nullptr);
+  const std::filesystem::path executable = executable_file();
   const SpawnFiles files(log);
   pid_t pid = 0;
-  const int error = posix_spawn(&pid, kThisExecutable, files.get(), nullptr, argv.data(), environ);
+  const int error =
+      posix_spawn(&pid, executable.c_str(), files.get(), nullptr, argv.data(), environ);
   if (error != 0) {
     throw UserError(log.string() +
                     ": cannot start a process with this log: " + std::strerror(error));

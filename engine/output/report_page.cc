@@ -4,6 +4,7 @@
 
 #include "engine/assets.h"
 #include "engine/output/atomic_file.h"
+#include "engine/program.h"
 
 namespace planecast::engine {
 namespace {
@@ -15,8 +16,7 @@ constexpr const char* kMapView = "report/map_view.bundle.js";
 /// Built beside the executable, or installed with the assets.
 std::string read_map_view() {
   std::error_code ignored;
-  const fs::path executable = fs::read_symlink("/proc/self/exe", ignored);
-  for (const fs::path& folder : {executable.parent_path(), assets_dir()}) {
+  for (const fs::path& folder : {executable_folder(), assets_dir()}) {
     if (fs::is_regular_file(folder / kMapView, ignored)) return read_file(folder / kMapView);
   }
   return "";
