@@ -23,9 +23,9 @@ struct PlaneMaps {
 
 /// Chosen on the validation rooms (scripts/train/README.md).
 struct DecodeOptions {
-  float coherence = 0.5F;         ///< k of the first grouping: larger, larger groups
+  float coherence = 0.3F;         ///< k of the first grouping: larger, larger groups
   float embedding_weight = 1.0F;  ///< of a step's change of embedding against its boundary
-  double small_share = 0.003;     ///< of the picture; smaller groups join a neighbour
+  double small_share = 0.0037;    ///< of the picture; smaller groups join a neighbour
   MergeCosts costs;
   float min_planarity = 0.5F;  ///< mean probability of an instance
   float same_distance = 0.6F;  ///< embeddings of two parts of one plane...

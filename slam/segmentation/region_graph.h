@@ -23,10 +23,10 @@ struct RegionSums {
 /// What it costs to take two neighbouring regions for one: the mean boundary probability along
 /// their border and how much they differ, weighted.
 struct MergeCosts {
-  float embedding = 0.25F;  ///< per unit of distance
-  float normal = 0.5F;      ///< per 1 - cosine
-  float planarity = 0.5F;   ///< per difference of the mean probabilities
-  float most = 0.6F;        ///< that is paid
+  float embedding = 0.3F;  ///< per unit of distance
+  float normal = 0.5F;     ///< per 1 - cosine
+  float planarity = 0.5F;  ///< per difference of the mean probabilities
+  float most = 1.0F;       ///< that is paid
 };
 
 /// Regions and the borders between them; merges the cheapest pair until none is cheap enough.
