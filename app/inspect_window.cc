@@ -10,6 +10,9 @@
 #include <algorithm>
 #include <memory>
 #include <opencv2/imgproc.hpp>
+#include <set>
+#include <utility>
+#include <vector>
 
 #include "engine/cancel.h"
 #include "engine/user_error.h"
@@ -59,13 +62,49 @@ WindowHandle open_window(cv::Size size, const std::string& title) {
   return window;
 }
 
-/// ImGui's input from the window.
+/// ImGui's input from the window. ImGui 1.86 sees keys as they are when a picture begins, so that a
+/// key pressed and let go between two pictures never was: letting go waits for a picture here.
 class Input {
  public:
-  explicit Input(GLFWwindow* window) { ImGui_ImplGlfw_InitForOther(window, true); }
+  explicit Input(GLFWwindow* window) : window_(window) {
+    glfwSetWindowUserPointer(window, this);
+    ImGui_ImplGlfw_InitForOther(window, true);
+    glfwSetKeyCallback(window, &Input::take_key);
+  }
   ~Input() { ImGui_ImplGlfw_Shutdown(); }
   Input(const Input&) = delete;
   Input& operator=(const Input&) = delete;
+
+  /// To be called when a picture was drawn with the keys as they are.
+  void picture_drawn() {
+    pressed_.clear();
+    for (const Key& key : std::exchange(let_go_, {})) pass_on(key);
+  }
+
+ private:
+  struct Key {
+    int key = 0;
+    int scancode = 0;
+    int action = 0;
+    int mods = 0;
+  };
+
+  static void take_key(GLFWwindow* window, int key, int scancode, int action, int mods) {
+    auto& input = *static_cast<Input*>(glfwGetWindowUserPointer(window));
+    if (action == GLFW_PRESS) input.pressed_.insert(key);
+    if (action == GLFW_RELEASE && input.pressed_.contains(key)) {
+      input.let_go_.push_back({key, scancode, action, mods});
+    } else {
+      input.pass_on({key, scancode, action, mods});
+    }
+  }
+  void pass_on(const Key& key) const {
+    ImGui_ImplGlfw_KeyCallback(window_, key.key, key.scancode, key.action, key.mods);
+  }
+
+  GLFWwindow* window_;
+  std::set<int> pressed_;    ///< since the last picture
+  std::vector<Key> let_go_;  ///< of those
 };
 
 void put_picture(GLFWwindow* window, const cv::Mat& bgr) {
@@ -93,7 +132,7 @@ void show_window(engine::InspectWindow& window, engine::InspectScreen& screen, c
   const WindowSystem system;
   const WindowHandle handle = open_window(size, title);
   screen.gui().make_current();
-  const Input input(handle.get());
+  Input input(handle.get());
   double last_s = glfwGetTime();
   while (glfwWindowShouldClose(handle.get()) == GLFW_FALSE && !window.wants_to_close() &&
          !engine::cancel_requested()) {
@@ -107,6 +146,7 @@ void show_window(engine::InspectWindow& window, engine::InspectScreen& screen, c
       const double now_s = glfwGetTime();
       put_picture(handle.get(), screen.draw(width, height, static_cast<float>(now_s - last_s)));
       last_s = now_s;
+      input.picture_drawn();
       if (i + 1 < kPicturesAfterInput) glfwPollEvents();
     }
     glfwWaitEventsTimeout(window.view().playing ? kBusyWait_s : kIdleWait_s);

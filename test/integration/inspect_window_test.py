@@ -112,7 +112,7 @@ class Window(unittest.TestCase):
         time.sleep(0.5)
 
     def key(self, name):
-        self.xdotool("key", "--window", self.window, "--delay", "200", name)
+        self.xdotool("key", "--window", self.window, "--delay", "1", name)
         time.sleep(0.5)
 
     def drag(self, start, end):
