@@ -188,14 +188,13 @@ void System::enqueue(int frame_index, int visible_at, MapJob job) {
 }
 
 void System::begin_loop(const Mapped& mapped, int inserted_at) {
-  open_loop_.emplace();
-  open_loop_->visible_at = inserted_at + options_.loop_delay;
-  open_loop_->correction =
-      std::async(options_.threads > 1 ? std::launch::async : std::launch::deferred,
-                 [this, map = mapped.map, match = *mapped.loop] {
-                   return correct_loop(*map, camera_, match, options_.loops);
-                 })
-          .share();
+  open_loop_ =
+      OpenLoop{inserted_at + options_.loop_delay,
+               std::async(options_.threads > 1 ? std::launch::async : std::launch::deferred,
+                          [this, map = mapped.map, match = *mapped.loop] {
+                            return correct_loop(*map, camera_, match, options_.loops);
+                          })
+                   .share()};
 }
 
 /// Queues the carrying over of the loop among the keyframes so that it is due when it should be.

@@ -124,7 +124,7 @@ class System {
   using MapJob = std::function<Mapped()>;
   /// A loop that is being closed on a copy of the map.
   struct OpenLoop {
-    int visible_at = 0;  ///< frame index
+    int visible_at;  ///< frame index
     std::shared_future<std::optional<LoopCorrection>> correction;
   };
 
