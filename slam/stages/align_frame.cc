@@ -14,7 +14,6 @@ namespace {
 
 constexpr int kSide = 4;
 constexpr int kArea = kSide * kSide;
-constexpr float kFirst = -0.5F * (kSide - 1);
 /// Mean absolute difference of a point's patch, in grey values, beyond which its weight falls
 /// (Huber).
 constexpr float kRobustGrey = 10.0F;
