@@ -178,8 +178,9 @@ ImageCheck check_bmp(const Bytes& bytes) {
   const bool compressed = little_endian(bytes, 30, 4) != 0;
   const std::int64_t row_bytes = (width * bits + 31) / 32 * 4;
   const std::int64_t pixels_at = little_endian(bytes, 10, 4);
-  const auto size = static_cast<std::int64_t>(bytes.size());
-  if (compressed || size >= pixels_at + row_bytes * rows) check.damage.clear();
+  const std::int64_t room = static_cast<std::int64_t>(bytes.size()) - pixels_at;
+  const bool holds_all = row_bytes == 0 ? room >= 0 : rows <= room / row_bytes;
+  if (compressed || holds_all) check.damage.clear();
   return check;
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <optional>
 
 namespace planecast::slam {
 namespace {
@@ -9,8 +10,9 @@ namespace {
 /// Least sizes in bytes, by which counts are bounded.
 constexpr std::size_t kKeypointBytes = 36;
 constexpr std::size_t kPairBytes = 8;
-/// Ids are dense, so that a store is as long as its highest id.
-constexpr int kMostIds = 1 << 26;
+/// Ids are dense, so that a store is as long as its highest id: half a gigabyte of places for each
+/// kind, which is over a million landmarks. A file that claims more lies.
+constexpr std::size_t kMostStoreBytes = std::size_t{1} << 29;
 
 template <typename Derived>
 void put_matrix(const Eigen::MatrixBase<Derived>& matrix, ByteWriter& out) {
@@ -137,6 +139,7 @@ void put_store(const SlotStore<T>& store, const Put& put, ByteWriter& out) {
 template <typename T, typename Take>
 void take_store(ByteReader& in, SlotStore<T>& store, const Take& take) {
   const auto next_id = in.number<std::int32_t>();
+  constexpr auto kMostIds = static_cast<std::int32_t>(kMostStoreBytes / sizeof(std::optional<T>));
   if (next_id < 0 || next_id > kMostIds) in.fail();
   const std::size_t count = in.count(sizeof(std::int32_t));
   int previous = -1;

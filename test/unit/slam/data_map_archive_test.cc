@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
+
 #include "test/unit/slam/synthetic_map.h"
 
 namespace planecast::slam {
@@ -98,6 +100,14 @@ TEST(MapArchive, NoByteBreaksAnInvariant) {
     }
   }
   EXPECT_GT(refused, 0);
+}
+
+/// Ids are places in memory: a short file must not ask for gigabytes of them.
+TEST(MapArchive, MoreIdsThanAnyMapHasAreRefused) {
+  std::string bytes = MapArchive::encode(Map());
+  const std::int32_t ids = 1 << 26;
+  std::memcpy(bytes.data(), &ids, sizeof(ids));  // the keyframes' next id comes first
+  EXPECT_FALSE(MapArchive::decode(bytes, synthetic::camera()));
 }
 
 TEST(MapArchive, HistoriesThatNeverEndAreRefused) {
