@@ -15,7 +15,7 @@ namespace {
 
 /// Offset of the first sample from the patch's centre: the patch has an even side.
 constexpr float kFirst = -0.5F * (kPatchSide - 1);
-constexpr int kRim = kPatchSide + 2;  ///< with one sample around it, for the gradients
+constexpr int kRim = kSampledSide;
 /// Least eigenvalue of the gradients' second moments, per pixel: in squared grey values.
 constexpr float kMinMoment = 2.0F;
 
@@ -27,7 +27,7 @@ bool inside(const cv::Mat& image, const Eigen::Vector2f& pixel) {
 /// Samples the patch with a rim of one sample; false beyond the image.
 PLANECAST_VECTOR_CLONES
 bool sample_with_rim(const cv::Mat& image, const Eigen::Vector2f& centre,
-                     const Eigen::Matrix2f& ref_from_patch, std::array<float, kRim * kRim>& rim) {
+                     const Eigen::Matrix2f& ref_from_patch, PatchSamples& rim) {
   const float first = kFirst - 1.0F;
   const float last = first + kRim - 1;
   for (const float v : {first, last}) {
@@ -78,29 +78,66 @@ bool sample_with_rim(const cv::Mat& image, const Eigen::Vector2f& centre,
   return true;
 }
 
+/// Eight neighbours of a patch's row, summed apart, so that vectors of any width give the same
+/// bits.
+using Lanes = float __attribute__((vector_size(32)));
+static_assert(kPatchSide == 8);
+
+inline Lanes lanes_at(const float* values) {
+  Lanes lanes;
+  std::memcpy(&lanes, values, sizeof(lanes));
+  return lanes;
+}
+
+inline float total(const Lanes& lanes) {
+  const float even = (lanes[0] + lanes[4]) + (lanes[2] + lanes[6]);
+  const float odd = (lanes[1] + lanes[5]) + (lanes[3] + lanes[7]);
+  return even + odd;
+}
+
 struct Comparison {
   float correlation = 0.0F;
   Eigen::Vector2f gradient;  ///< sum of template gradient times difference
 };
 
-Comparison compare(const PatchTemplate& patch, PatchValues& current) {
-  current -= current.mean();
-  const float norm = std::sqrt(current.square().sum());
+PLANECAST_VECTOR_CLONES
+Comparison compare(const PatchTemplate& patch, const PatchValues& current) {
+  Lanes sum = {};
+  for (int i = 0; i < kPatchArea; i += kPatchSide) sum += lanes_at(current.data() + i);
+  const float mean = total(sum) / kPatchArea;
+  Lanes squares = {}, by_value = {}, by_x = {}, by_y = {};
+  for (int i = 0; i < kPatchArea; i += kPatchSide) {
+    const Lanes centred = lanes_at(current.data() + i) - mean;
+    squares += centred * centred;
+    by_value += centred * lanes_at(patch.value.data() + i);
+    by_x += centred * lanes_at(patch.grad_x.data() + i);
+    by_y += centred * lanes_at(patch.grad_y.data() + i);
+  }
+  const float norm = std::sqrt(total(squares));
   if (norm < 1e-3F) return {0.0F, Eigen::Vector2f::Zero()};
-  const Eigen::Vector2f current_by_gradient((current * patch.grad_x).sum(),
-                                            (current * patch.grad_y).sum());
   Comparison result;
-  result.correlation = (current * patch.value).sum() / (norm * patch.norm);
-  result.gradient = patch.norm / norm * current_by_gradient - patch.value_by_gradient;
+  result.correlation = total(by_value) / (norm * patch.norm);
+  result.gradient =
+      patch.norm / norm * Eigen::Vector2f(total(by_x), total(by_y)) - patch.value_by_gradient;
   return result;
 }
 
 }  // namespace
 
+std::optional<PatchSamples> sample_patch(const cv::Mat& image, const Eigen::Vector2f& centre,
+                                         const Eigen::Matrix2f& ref_from_patch) {
+  PatchSamples samples;
+  if (!sample_with_rim(image, centre, ref_from_patch, samples)) return std::nullopt;
+  return samples;
+}
+
 std::optional<PatchTemplate> make_template(const cv::Mat& image, const Eigen::Vector2f& centre,
                                            const Eigen::Matrix2f& ref_from_patch) {
-  std::array<float, kRim * kRim> rim;
-  if (!sample_with_rim(image, centre, ref_from_patch, rim)) return std::nullopt;
+  const std::optional<PatchSamples> samples = sample_patch(image, centre, ref_from_patch);
+  return samples ? make_template(*samples) : std::nullopt;
+}
+
+std::optional<PatchTemplate> make_template(const PatchSamples& rim) {
   PatchTemplate patch;
   for (int v = 0; v < kPatchSide; ++v) {
     for (int u = 0; u < kPatchSide; ++u) {
@@ -128,18 +165,28 @@ std::optional<PatchTemplate> make_template(const cv::Mat& image, const Eigen::Ve
   return patch;
 }
 
-QuickTemplate::QuickTemplate(const PatchTemplate& patch) {
+QuickTemplate::QuickTemplate(const PatchSamples& samples) {
+  PatchValues value;
+  for (int v = 0; v < kPatchSide; ++v) {
+    for (int u = 0; u < kPatchSide; ++u) {
+      value[v * kPatchSide + u] = samples[static_cast<std::size_t>((v + 1) * kRim + u + 1)];
+    }
+  }
+  value -= value.mean();
   // 255 times this, times 64 pixels of 255, still fits 32 bits.
   constexpr float kScale = 64.0F;
+  // Makes whole numbers of the range positive, so that cutting off rounds.
+  constexpr int kPositive = 1 << 14;
   for (std::size_t i = 0; i < kPatchArea; ++i) {
-    const auto rounded =
-        static_cast<std::int16_t>(std::lround(kScale * patch.value[static_cast<int>(i)]));
+    const float raised = kScale * value[static_cast<int>(i)] + (kPositive + 0.5F);
+    const auto rounded = static_cast<std::int16_t>(static_cast<int>(raised) - kPositive);
     value_[i] = rounded;
     sum_ += rounded;
   }
-  norm_ = kScale * patch.norm;
+  norm_ = kScale * std::sqrt(value.square().sum());
 }
 
+PLANECAST_VECTOR_CLONES
 float QuickTemplate::correlate(const cv::Mat& image, const Eigen::Vector2f& centre) const {
   const int x0 = static_cast<int>(std::floor(centre.x() + kFirst + 0.5F));
   const int y0 = static_cast<int>(std::floor(centre.y() + kFirst + 0.5F));
@@ -159,7 +206,7 @@ float QuickTemplate::correlate(const cv::Mat& image, const Eigen::Vector2f& cent
     product += grey * value_[i];
   }
   const int variance = square - sum * sum / kPatchArea;
-  if (variance < 1) return -1.0F;
+  if (variance < 1 || !(norm_ > 0.0F)) return -1.0F;
   return static_cast<float>(product - sum_ * sum / kPatchArea) /
          (std::sqrt(static_cast<float>(variance)) * norm_);
 }

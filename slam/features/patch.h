@@ -24,18 +24,28 @@ struct PatchTemplate {
   Eigen::Matrix2f inverse_hessian;
 };
 
-/// Samples a template: template pixel d (from the centre) is taken from `image` at
-/// `centre + ref_from_patch * d`. Nothing if it reaches beyond the image or has too little texture
-/// to fix both coordinates.
+inline constexpr int kSampledSide = kPatchSide + 2;  ///< with one sample around it, for gradients
+/// Grey values of a patch and what is around it, row by row.
+using PatchSamples = std::array<float, kSampledSide * kSampledSide>;
+
+/// Samples a patch: its pixel d (from the centre) is taken from `image` at
+/// `centre + ref_from_patch * d`. Nothing if it reaches beyond the image.
+std::optional<PatchSamples> sample_patch(const cv::Mat& image, const Eigen::Vector2f& centre,
+                                         const Eigen::Matrix2f& ref_from_patch);
+
+/// Nothing if there is too little texture to fix both coordinates.
+std::optional<PatchTemplate> make_template(const PatchSamples& samples);
+
+/// The same of a patch that is sampled by sample_patch.
 std::optional<PatchTemplate> make_template(const cv::Mat& image, const Eigen::Vector2f& centre,
                                            const Eigen::Matrix2f& ref_from_patch);
 
 /// A template for many quick looks, in whole numbers.
 class QuickTemplate {
  public:
-  explicit QuickTemplate(const PatchTemplate& patch);
+  explicit QuickTemplate(const PatchSamples& samples);
   /// Zero-mean normalised correlation with the image, -1..1, at the whole pixels nearest to a
-  /// place: half a pixel off at most. -1 where it reaches beyond the image.
+  /// place: half a pixel off at most. -1 where it reaches beyond the image or either is flat.
   float correlate(const cv::Mat& image, const Eigen::Vector2f& centre) const;
 
  private:

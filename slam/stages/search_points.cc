@@ -25,6 +25,8 @@ constexpr double kStepPx = 1.0;
 constexpr int kPeakSteps = 3;
 /// How far alignment may lead from the best step, in pixels of the level.
 constexpr float kMaxSettlePx = 2.0F;
+/// Where alignment ends at a level that only leads to a finer one.
+constexpr float kCoarseConvergedPx = 0.25F;
 
 struct InverseDepths {
   double least = 0.0;
@@ -41,11 +43,15 @@ std::optional<InverseDepths> depth_range(const Map& map, const Keyframe& keyfram
     if (z > 0.0) depths.push_back(z);
   }
   if (depths.size() < 10) return std::nullopt;
-  std::sort(depths.begin(), depths.end());
+  const auto ranked = [&depths](std::size_t rank) {
+    const auto place = depths.begin() + static_cast<std::ptrdiff_t>(rank);
+    std::nth_element(depths.begin(), place, depths.end());
+    return *place;
+  };
   const std::size_t tail = depths.size() / 20;
-  return InverseDepths{1.0 / (options.farthest_depth * depths[depths.size() - 1 - tail]),
-                       1.0 / depths[depths.size() / 2],
-                       1.0 / (options.nearest_depth * depths[tail])};
+  return InverseDepths{1.0 / (options.farthest_depth * ranked(depths.size() - 1 - tail)),
+                       1.0 / ranked(depths.size() / 2),
+                       1.0 / (options.nearest_depth * ranked(tail))};
 }
 
 /// Keypoints without a landmark that are worth another look, strongest first.
@@ -95,24 +101,27 @@ class EpipolarSearch {
     // A long line is searched at a coarser level, and the place then followed to the finer ones.
     std::optional<Eigen::Vector2f> raw;
     for (int coarser = coarser_levels(*line, keypoint); coarser >= 0; --coarser) {
-      const auto patch = warp_patch(*neighbour_.pyramid, keypoint, *view, *keyframe_.pyramid,
-                                    options_.points.levels, coarser);
-      if (!patch) return std::nullopt;
-      if (!raw) raw = search(*line, *patch);
+      const auto samples = warp_samples(*neighbour_.pyramid, keypoint, *view, *keyframe_.pyramid,
+                                        options_.points.levels, coarser);
+      if (!samples) return std::nullopt;
+      if (!raw) raw = search(*line, *samples);
       if (!raw) return std::nullopt;
+      const auto patch = make_template(samples->looks);
+      if (!patch) return std::nullopt;
       PatchAlignOptions align;
       align.max_shift_px = kMaxSettlePx;
-      const auto settled =
-          align_patch(patch->looks, level_of(*patch), at_level(*raw, patch->level), align);
+      if (coarser > 0) align.converged_px = kCoarseConvergedPx;
+      const int level = samples->level;
+      const auto settled = align_patch(*patch, image_at(level), at_level(*raw, level), align);
       if (!settled || settled->correlation < options_.min_correlation) return std::nullopt;
-      raw = from_level(settled->pixel, patch->level);
+      raw = from_level(settled->pixel, level);
     }
     return sighting(k, keypoint, *raw);
   }
 
  private:
-  const cv::Mat& level_of(const WarpedPatch& patch) const {
-    return keyframe_.pyramid->levels[static_cast<std::size_t>(patch.level)];
+  const cv::Mat& image_at(int level) const {
+    return keyframe_.pyramid->levels[static_cast<std::size_t>(level)];
   }
 
   /// Undistorted pixels between which a keypoint's point lies in the new keyframe.
@@ -159,7 +168,7 @@ class EpipolarSearch {
   }
 
   /// Raw pixel of the best correlation along the line.
-  std::optional<Eigen::Vector2f> search(const Line& line, const WarpedPatch& patch) {
+  std::optional<Eigen::Vector2f> search(const Line& line, const WarpedSamples& patch) {
     const double length = line.length() / (1 << patch.level);
     const int steps = static_cast<int>(std::ceil(length / kStepPx)) + 1;
     const QuickTemplate quick(patch.looks);
@@ -171,7 +180,8 @@ class EpipolarSearch {
       if (!camera_.contains(pixel)) continue;
       const Eigen::Vector2d raw = camera_.has_distortion() ? camera_.distort(pixel) : pixel;
       places_.push_back(raw.cast<float>());
-      scores_.push_back(quick.correlate(level_of(patch), at_level(places_.back(), patch.level)));
+      scores_.push_back(
+          quick.correlate(image_at(patch.level), at_level(places_.back(), patch.level)));
     }
     return unambiguous_best();
   }
@@ -314,12 +324,10 @@ std::vector<Sighting> search_points(const Map& map, KeyframeId id, const Camera&
   int searched = 0;
   for (const KeyframeId neighbour_id : best_neighbours(map, id, 20)) {
     const Keyframe& neighbour = map.keyframes.at(neighbour_id);
-    if (neighbour.pyramid == nullptr ||
-        !wide_enough(map, keyframe, neighbour, false, options.points)) {
-      continue;
-    }
+    if (neighbour.pyramid == nullptr) continue;
     const auto range = depth_range(map, neighbour, options);
-    if (!range) continue;
+    const double baseline = (keyframe.centre_world() - neighbour.centre_world()).norm();
+    if (!range || baseline * range->median < options.min_baseline_share) continue;
     EpipolarSearch search(camera, neighbour, keyframe, *range, options);
     std::vector<std::uint8_t>& counts = log.of(neighbour_id, neighbour.landmarks.size());
     for (const int k : free_keypoints(neighbour, counts, options)) {

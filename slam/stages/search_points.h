@@ -14,9 +14,11 @@
 namespace planecast::slam {
 
 struct SearchPointsOptions {
-  int neighbours = 4;           ///< keyframes whose keypoints are looked for
-  int max_points = 400;         ///< keypoints of a keyframe that are looked for, strongest first
-  int max_searches = 3;         ///< in which a keypoint may be looked for in vain
+  int neighbours = 3;    ///< keyframes whose keypoints are looked for
+  int max_points = 250;  ///< keypoints of a keyframe that are looked for, strongest first
+  int max_searches = 3;  ///< in which a keypoint may be looked for in vain
+  /// Of the neighbour's median depth: with less, most points would fail the parallax test.
+  double min_baseline_share = 0.02;
   double nearest_depth = 0.5;   ///< of the 5th percentile of the keyframe's depths
   double farthest_depth = 2.0;  ///< of the 95th
   int max_steps = 50;           ///< along an epipolar line, at the level where it is searched

@@ -102,6 +102,26 @@ TEST(Patch, RefusesWhatHasNoTexture) {
   EXPECT_FALSE(make_template(edge, {2.0F, 30.0F}, Eigen::Matrix2f::Identity()));
 }
 
+TEST(Patch, AQuickLookKnowsItsPlace) {
+  const Camera camera = test_camera();
+  const cv::Mat image = render_plane(camera, Pose::Identity(), kDepth);
+  // Between pixels, where the patch has its samples on whole ones.
+  const Eigen::Vector2f centre(100.5F, 80.5F);
+  const auto samples = sample_patch(image, centre, Eigen::Matrix2f::Identity());
+  ASSERT_TRUE(samples);
+  const QuickTemplate quick(*samples);
+  EXPECT_GT(quick.correlate(image, centre), 0.999F);
+  EXPECT_LT(quick.correlate(image, centre + Eigen::Vector2f(4.0F, 0.0F)), 0.8F);
+  const cv::Mat negative = 255 - image;
+  EXPECT_LT(quick.correlate(negative, centre), -0.999F);
+  EXPECT_EQ(quick.correlate(image, {2.0F, 80.5F}), -1.0F) << "beyond the image";
+  const cv::Mat flat(image.size(), CV_8UC1, cv::Scalar(90));
+  EXPECT_EQ(quick.correlate(flat, centre), -1.0F);
+  const auto nothing = sample_patch(flat, centre, Eigen::Matrix2f::Identity());
+  ASSERT_TRUE(nothing);
+  EXPECT_EQ(QuickTemplate(*nothing).correlate(image, centre), -1.0F);
+}
+
 TEST(AlignFrame, FindsThePoseOfALargeMove) {
   const Camera camera = test_camera();
   const cv::Mat before = render_plane(camera, Pose::Identity(), kDepth);
