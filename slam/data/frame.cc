@@ -24,8 +24,9 @@ void Features::build_grid(int width, int height) {
   cell_items_.resize(keypoints.size());
   std::vector<int> next(cell_begin_.begin(), cell_begin_.end() - 1);
   for (int i = 0; i < size(); ++i) {
-    const std::size_t cell = cell_of(keypoints[static_cast<std::size_t>(i)]);
-    cell_items_[static_cast<std::size_t>(next[cell]++)] = i;
+    const Keypoint& keypoint = keypoints[static_cast<std::size_t>(i)];
+    cell_items_[static_cast<std::size_t>(next[cell_of(keypoint)]++)] = {
+        keypoint.pixel.x(), keypoint.pixel.y(), keypoint.octave, i};
   }
 }
 
@@ -44,14 +45,12 @@ void Features::find_in_area(const Eigen::Vector2d& pixel, double radius_px, int 
     for (int col = col_begin; col <= col_end; ++col) {
       const auto index = static_cast<std::size_t>(row * grid_cols_ + col);
       for (int k = cell_begin_[index]; k < cell_begin_[index + 1]; ++k) {
-        const int item = cell_items_[static_cast<std::size_t>(k)];
-        const Keypoint& keypoint = keypoints[static_cast<std::size_t>(item)];
-        if (keypoint.octave < min_octave || keypoint.octave > max_octave) continue;
-        if (std::abs(keypoint.pixel.x() - pixel.x()) > radius_px ||
-            std::abs(keypoint.pixel.y() - pixel.y()) > radius_px) {
+        const CellItem& item = cell_items_[static_cast<std::size_t>(k)];
+        if (item.octave < min_octave || item.octave > max_octave) continue;
+        if (std::abs(item.x - pixel.x()) > radius_px || std::abs(item.y - pixel.y()) > radius_px) {
           continue;
         }
-        found.push_back(item);
+        found.push_back(item.keypoint);
       }
     }
   }

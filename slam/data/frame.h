@@ -57,7 +57,14 @@ struct Features {
   int grid_cols_ = 0;
   int grid_rows_ = 0;
   std::vector<int> cell_begin_;  ///< size cols*rows+1
-  std::vector<int> cell_items_;
+  /// What a look-up asks for, together in memory.
+  struct CellItem {
+    float x = 0.0F;
+    float y = 0.0F;
+    int octave = 0;
+    int keypoint = 0;
+  };
+  std::vector<CellItem> cell_items_;
 };
 
 /// A grey image (8-bit) and its halves, finest first.
