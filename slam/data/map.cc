@@ -16,29 +16,19 @@ bool sees(const std::vector<Observation>& observations, KeyframeId keyframe) {
                      [keyframe](const Observation& o) { return o.keyframe == keyframe; });
 }
 
-/// Index of the one with the least median distance to all [K]; the first of equals.
+/// Index of the one with the least distance to all the others together; the first of equals.
 std::size_t medoid_of(const std::vector<const Descriptor*>& descriptors) {
   const std::size_t n = descriptors.size();
-  if (n < 3) return 0;  // each is its own nearest, and the median that of two
-  std::vector<int> distances(n * n, 0);
+  if (n < 3) return 0;  // each is as far from the other
+  std::vector<int> sums(n, 0);
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 1; j < n; ++j) {
-      distances[i * n + j] = distances[j * n + i] =
-          hamming_distance(*descriptors[i], *descriptors[j]);
+      const int distance = hamming_distance(*descriptors[i], *descriptors[j]);
+      sums[i] += distance;
+      sums[j] += distance;
     }
   }
-  std::size_t best = 0;
-  int best_median = 257;
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto begin = distances.begin() + static_cast<std::ptrdiff_t>(i * n);
-    const auto middle = begin + static_cast<std::ptrdiff_t>((n - 1) / 2);
-    std::nth_element(begin, middle, begin + static_cast<std::ptrdiff_t>(n));
-    if (*middle < best_median) {
-      best_median = *middle;
-      best = i;
-    }
-  }
-  return best;
+  return static_cast<std::size_t>(std::min_element(sums.begin(), sums.end()) - sums.begin());
 }
 
 }  // namespace
