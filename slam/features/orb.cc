@@ -16,6 +16,7 @@ namespace planecast::slam {
 namespace {
 
 constexpr int kPatchRadius = 15;
+constexpr int kPatchSize = 2 * kPatchRadius + 1;
 /// FAST itself needs 3 px, the orientation's patch 15, rounding 1.
 constexpr int kBorder = 19;
 
@@ -177,9 +178,10 @@ std::vector<cv::KeyPoint> OrbExtractor::Impl::detect_all(int limit, int threshol
 
 OrbExtractor::OrbExtractor(const OrbOptions& options) : impl_(std::make_unique<Impl>()) {
   impl_->options = options;
-  // Only its descriptor is used; an edge threshold of 1 keeps our own border rule the only one.
-  impl_->descriptor = cv::ORB::create(options.features, static_cast<float>(options.levels.factor),
-                                      options.levels.levels, 1, 0, 2, cv::ORB::FAST_SCORE, 31);
+  // Only its descriptor is used, level by level on our own pyramid; an edge threshold of 1 keeps
+  // our own border rule the only one.
+  impl_->descriptor =
+      cv::ORB::create(options.features, 2.0F, 1, 1, 0, 2, cv::ORB::FAST_SCORE, kPatchSize);
 }
 
 OrbExtractor::~OrbExtractor() = default;
@@ -241,22 +243,25 @@ std::vector<int> OrbExtractor::append(const std::vector<Keypoint>& points, Featu
 }
 
 void OrbExtractor::describe(Features& features) const {
-  const std::size_t described = features.descriptors.size();
-  std::vector<cv::KeyPoint> corners;
-  for (std::size_t k = described; k < features.keypoints.size(); ++k) {
-    const Keypoint& keypoint = features.keypoints[k];
-    const auto scale = static_cast<float>(impl_->options.levels.scale(keypoint.octave));
-    corners.emplace_back(keypoint.raw.x(), keypoint.raw.y(), 31.0F * scale, keypoint.angle_deg,
-                         keypoint.response, keypoint.octave, static_cast<int>(k));
-  }
+  const auto described = static_cast<int>(features.descriptors.size());
   features.descriptors.resize(features.keypoints.size());
-  if (corners.empty()) return;
-  cv::Mat rows;
-  impl_->descriptor->compute(impl_->pyramid.front(), corners, rows);
-  // It may have put them in another order.
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    std::memcpy(features.descriptors[static_cast<std::size_t>(corners[i].class_id)].data(),
-                rows.ptr<uchar>(static_cast<int>(i)), sizeof(Descriptor));
+  std::vector<std::vector<cv::KeyPoint>> corners(impl_->pyramid.size());
+  for (int k = described; k < features.size(); ++k) {
+    const Keypoint& keypoint = features.keypoints[static_cast<std::size_t>(k)];
+    const auto scale = static_cast<float>(impl_->options.levels.scale(keypoint.octave));
+    corners[static_cast<std::size_t>(keypoint.octave)].emplace_back(
+        keypoint.raw.x() / scale, keypoint.raw.y() / scale, static_cast<float>(kPatchSize),
+        keypoint.angle_deg, keypoint.response, 0, k);
+  }
+  for (std::size_t level = 0; level < corners.size(); ++level) {
+    if (corners[level].empty()) continue;
+    cv::Mat rows;
+    impl_->descriptor->compute(impl_->pyramid[level], corners[level], rows);
+    for (std::size_t i = 0; i < corners[level].size(); ++i) {
+      const auto k = static_cast<std::size_t>(corners[level][i].class_id);
+      std::memcpy(features.descriptors[k].data(), rows.ptr<uchar>(static_cast<int>(i)),
+                  sizeof(Descriptor));
+    }
   }
 }
 
