@@ -80,11 +80,11 @@ int count_good(const PoseJudge& judge, const std::vector<PointPair>& pairs,
   return good;
 }
 
-/// Angle of the kParallaxRank-th largest, or of the smallest where there are fewer.
-double ranked_parallax_deg(std::vector<double>& cosines) {
+/// Angle of the `rank`-th largest, or of the smallest where there are fewer.
+double ranked_parallax_deg(std::vector<double>& cosines, std::size_t rank) {
   if (cosines.empty()) return 0.0;
-  const std::size_t rank = std::min(kParallaxRank, cosines.size()) - 1;
-  const auto nth = cosines.begin() + static_cast<std::ptrdiff_t>(rank);
+  const auto nth =
+      cosines.begin() + static_cast<std::ptrdiff_t>(std::min(rank, cosines.size()) - 1);
   std::nth_element(cosines.begin(), nth, cosines.end());
   return std::acos(std::clamp(*nth, -1.0, 1.0)) * kDegreesPerRadian;
 }
@@ -96,6 +96,7 @@ std::vector<char> describe(const Pose& pose, const std::vector<PointPair>& pairs
   const PoseJudge judge(pose, camera, sigma_px);
   std::vector<char> good(pairs.size(), 0);
   std::vector<double> cosines;
+  std::vector<double> near_cosines;
   result.cur_from_ref = pose;
   result.points_ref.assign(pairs.size(), std::nullopt);
   result.good = 0;
@@ -106,9 +107,12 @@ std::vector<char> describe(const Pose& pose, const std::vector<PointPair>& pairs
     good[i] = 1;
     ++result.good;
     cosines.push_back(witness.cosine);
-    if (!witness.far) result.points_ref[i] = witness.point_ref;
+    if (witness.far) continue;
+    result.points_ref[i] = witness.point_ref;
+    near_cosines.push_back(witness.cosine);
   }
-  result.parallax_deg = ranked_parallax_deg(cosines);
+  result.parallax_deg = ranked_parallax_deg(cosines, kParallaxRank);
+  result.median_parallax_deg = ranked_parallax_deg(near_cosines, near_cosines.size() / 2 + 1);
   return good;
 }
 
@@ -116,7 +120,10 @@ TwoViewFailure verdict(const TwoViewResult& result, int inliers, const TwoViewOp
   if (result.good < options.min_points || result.good < options.min_good_ratio * inliers) {
     return TwoViewFailure::kTooFewPoints;
   }
-  if (result.parallax_deg < options.min_parallax_deg) return TwoViewFailure::kTooLittleParallax;
+  // A few near points may show parallax where the depths of most are still anybody's guess.
+  if (std::min(result.parallax_deg, result.median_parallax_deg) < options.min_parallax_deg) {
+    return TwoViewFailure::kTooLittleParallax;
+  }
   if (result.runner_up_good >= options.max_runner_up_ratio * result.good) {
     return TwoViewFailure::kAmbiguous;
   }

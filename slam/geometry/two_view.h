@@ -43,7 +43,7 @@ std::vector<Pose> decompose_homography(const Eigen::Matrix3d& cur_H_ref, const C
 std::vector<Pose> decompose_fundamental(const Eigen::Matrix3d& cur_F_ref, const Camera& camera);
 
 struct TwoViewOptions {
-  double min_parallax_deg = 1.0;
+  double min_parallax_deg = 1.0;  ///< of the 50th largest and of the median position
   double max_runner_up_ratio =
       0.75;  ///< the second best pose has fewer good points than this share
   /// Of the inliers, that the best pose must explain; ORB-SLAM asks for 0.9, less lets a guessed
@@ -59,9 +59,10 @@ struct TwoViewResult {
   TwoViewFailure failure = TwoViewFailure::kNone;
   Pose cur_from_ref = Pose::Identity();
   std::vector<std::optional<Eigen::Vector3d>> points_ref;  ///< per pair, in the reference camera
-  double parallax_deg = 0.0;  ///< of the 50th largest (or the smallest, if fewer)
-  int good = 0;               ///< inliers that the pose explains, far ones among them
-  int runner_up_good = 0;     ///< the same of the second best candidate
+  double parallax_deg = 0.0;         ///< of the 50th largest (or the smallest, if fewer)
+  double median_parallax_deg = 0.0;  ///< of the points that have a position
+  int good = 0;                      ///< inliers that the pose explains, far ones among them
+  int runner_up_good = 0;            ///< the same of the second best candidate
 };
 
 /// Chooses among candidate poses by positive depth, reprojection error (chi2 5.991) and parallax,

@@ -247,6 +247,25 @@ TEST(RelativePose, RefusesPureRotation) {
   EXPECT_NE(from_homography.failure, TwoViewFailure::kNone);
 }
 
+TEST(RelativePose, AFewNearPointsDoNotMakeAStart) {
+  Random random(seed_of("RelativePose.AFewNearPointsDoNotMakeAStart"));
+  Scene scene;
+  scene.cur_from_ref = pose_at({0.03, 0.0, 0.0}, {0.0, 0.02, 0.0});
+  scene.points = box_points(400, random);
+  // A step of 3 cm is 1.7 degrees at 1 m, 0.57 at 3 m.
+  for (std::size_t i = 0; i < scene.points.size(); ++i) {
+    scene.points[i] *= (i < 80 ? 1.0 : 3.0) / scene.points[i].z();
+  }
+  observe(scene, 0.0, false, random);
+  Pose truth = scene.cur_from_ref;
+  truth.translation().normalize();
+  const std::vector<char> all(scene.pairs.size(), 1);
+  const auto result = select_relative_pose({truth}, scene.pairs, all, scene.camera, {});
+  EXPECT_GT(result.parallax_deg, 1.5);
+  EXPECT_NEAR(result.median_parallax_deg, 0.5, 0.1);
+  EXPECT_EQ(result.failure, TwoViewFailure::kTooLittleParallax);
+}
+
 TEST(RelativePose, RefusesFewMatches) {
   Random random(seed_of("RelativePose.RefusesFewMatches"));
   const Scene scene = general_scene(random);
