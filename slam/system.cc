@@ -18,6 +18,7 @@ PrepareOptions prepare_options(const SystemOptions& options) {
 
 /// One set of pyramid levels and one seed for every stage.
 SystemOptions with_common_values(SystemOptions options) {
+  if (options.track.front_end == FrontEnd::kPatches) options.orb.levels = options.patch_levels;
   const ScaleLevels levels = options.orb.levels;
   options.initialise.levels = levels;
   options.initialise.tracks.scale_levels = levels;
@@ -51,7 +52,7 @@ SystemOptions with_common_values(SystemOptions options) {
   options.mapping.describe.patches.levels = levels;
   options.mapping.describe.localise = options.track.localise;
   options.mapping.describe.keypoints = options.orb.features;
-  options.mapping.describe.min_corners = options.orb.features / 2;
+  options.mapping.describe.min_corners = 2 * options.orb.features / 5;
   options.mapping.search.points = options.mapping.points;
   options.mapping.search_by_patches = options.track.front_end == FrontEnd::kPatches;
   return options;

@@ -31,6 +31,10 @@ struct SystemOptions {
   bool close_loops = true;  ///< needs the vocabulary
   std::shared_ptr<const Vocabulary> vocabulary;  ///< for place recognition; may be null
   OrbOptions orb;
+  /// Levels of the patch front end's features, in place of orb.levels. Their patches are aligned at
+  /// half-scale levels, so that an octave only says how large a corner is: four of 1.5 reach as far
+  /// as eight of 1.2 and have half the pixels.
+  ScaleLevels patch_levels = {4, 1.5};
   int initial_features = 2000;        ///< per frame until initialised [K]
   double max_keypoint_depth_m = 8.0;  ///< depth beyond it is not used
   int restart_after_lost = 20;  ///< frames lost with fewer than restart_keyframes: start again

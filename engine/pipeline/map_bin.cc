@@ -21,7 +21,7 @@ using slam::ByteReader;
 using slam::ByteWriter;
 
 constexpr std::string_view kMagic("PLNCMAP\0", 8);
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& reason) {
   throw UserError(fmt::format("{}: {}", path.string(), reason));

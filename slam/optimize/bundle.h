@@ -10,8 +10,8 @@ struct BundleOptions {
   double chi2_mono = 5.991;
   double chi2_depth = 7.815;
   double depth_baseline_m = 0.08;  ///< as in PoseOptions
-  int max_local_keyframes = 12;    ///< free keyframes of the local bundle, best covisible first
-  int max_fixed_keyframes = 20;    ///< seen by the same landmarks, held
+  int max_local_keyframes = 9;     ///< free keyframes of the local bundle, best covisible first
+  int max_fixed_keyframes = 12;    ///< seen by the same landmarks, held
   bool refine_focal = false;       ///< global only: one common factor on fx and fy
   /// Spread of a guessed focal length, as a share of it: a field of view of 60 degrees stands for
   /// 55 to 66.

@@ -12,11 +12,12 @@ namespace planecast::slam {
 
 struct DescribeKeyframeOptions {
   int keypoints = 1000;   ///< corners and landmarks together, as of an image with ORB alone [K]
-  int min_corners = 500;  ///< however many landmarks there are: new ones start from corners
+  int min_corners = 400;  ///< however many landmarks there are: new ones start from corners
   double snap_px =
       2.0;  ///< a corner so near to a landmark's patch, at its level, is that landmark's
   LocaliseOptions localise;
   PatchMatchOptions patches;  ///< beyond those of the tracker
+  DescribeKeyframeOptions() { patches.max_matches = 150; }
 };
 
 /// Gives corners to an image that was tracked by patches and is to become a keyframe. Landmarks

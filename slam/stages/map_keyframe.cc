@@ -148,7 +148,7 @@ KeyframeReport KeyframeMapper::insert(Map& map, KeyframeJob job) {
   Stopwatch watch;
   create_points(map, id, job.image, report.points, report.times);
   watch.lap_ms();
-  fuse_landmarks(map, id, camera_, options_.rgbd, options_.points, report.points);
+  fuse_landmarks(map, id, camera_, options_.points, report.points);
   report.times.emplace_back("Fusing", watch.lap_ms());
   if (options_.map_planes) plane_mapper_.update(map, id, report.planes);
   watch.lap_ms();

@@ -55,7 +55,8 @@ bool is_redundant(const Map& map, const Keyframe& keyframe, const PointMappingOp
   // Most keyframes are needed, which a few landmarks show.
   const double may_be_needed = (1.0 - options.redundant_share) * static_cast<double>(total);
   int needed = 0;
-  for (std::size_t k = 0; k < keyframe.landmarks.size(); ++k) {
+  // The last keypoints are those of the newest landmarks, which the fewest others see.
+  for (std::size_t k = keyframe.landmarks.size(); k-- > 0;) {
     if (keyframe.landmarks[k] == kNone || seen_enough_elsewhere(map, keyframe, k, options))
       continue;
     if (++needed >= may_be_needed) return false;
@@ -73,11 +74,10 @@ std::vector<LandmarkId> landmarks_in(const Keyframe& keyframe) {
 
 /// The keyframes in which a new one's landmarks are looked for, ascending: its neighbours and
 /// theirs.
-std::vector<KeyframeId> fuse_targets(const Map& map, KeyframeId id, bool rgbd,
+std::vector<KeyframeId> fuse_targets(const Map& map, KeyframeId id,
                                      const PointMappingOptions& options) {
-  const auto most =
-      static_cast<std::size_t>(rgbd ? options.neighbours_rgbd : options.neighbours_mono);
-  std::vector<KeyframeId> targets = best_neighbours(map, id, most);
+  std::vector<KeyframeId> targets =
+      best_neighbours(map, id, static_cast<std::size_t>(options.fuse_neighbours));
   // Neighbours of the best few are enough: their own neighbours overlap.
   constexpr std::size_t kAsked = 5;
   const std::vector<KeyframeId> best(
@@ -287,9 +287,9 @@ void fuse_landmarks_into(Map& map, const std::vector<LandmarkId>& candidates, Ke
   }
 }
 
-void fuse_landmarks(Map& map, KeyframeId id, const Camera& camera, bool rgbd,
+void fuse_landmarks(Map& map, KeyframeId id, const Camera& camera,
                     const PointMappingOptions& options, PointMappingStats& stats) {
-  const std::vector<KeyframeId> targets = fuse_targets(map, id, rgbd, options);
+  const std::vector<KeyframeId> targets = fuse_targets(map, id, options);
   const NotTriedBefore not_tried(map, id);
   for (const KeyframeId target : targets) {
     fuse_landmarks_into(map, not_tried.in(target), target, camera, options, stats);

@@ -13,6 +13,7 @@ namespace planecast::slam {
 struct PointMappingOptions {
   int neighbours_mono = 20;
   int neighbours_rgbd = 10;
+  int fuse_neighbours = 10;  ///< in which, and in whose neighbours, duplicates are looked for
   double min_found_ratio = 0.25;
   int trial_keyframes = 3;  ///< a landmark is on trial for so many keyframes
   double min_parallax_cosine = 0.9998;
@@ -67,7 +68,7 @@ void create_landmarks_from_depth(Map& map, KeyframeId keyframe, const Camera& ca
                                  PointMappingStats& stats);
 
 /// Merges duplicates between `keyframe` and its neighbours, both ways.
-void fuse_landmarks(Map& map, KeyframeId keyframe, const Camera& camera, bool rgbd,
+void fuse_landmarks(Map& map, KeyframeId keyframe, const Camera& camera,
                     const PointMappingOptions& options, PointMappingStats& stats);
 
 /// Projects `candidates` into `keyframe` and joins each with what it finds there.
