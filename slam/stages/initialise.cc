@@ -32,6 +32,8 @@ std::string explain(TwoViewFailure failure) {
 /// The corners moved by this share of the image's width and still show no parallax: the camera
 /// turned.
 constexpr double kRotationShift = 0.05;
+/// Cosine between the ways of two images that agree.
+constexpr double kSameWay = 0.9;
 
 double median_shift_px(const std::vector<PointPair>& pairs) {
   std::vector<double> shifts;
@@ -91,7 +93,7 @@ MonoInitialiser::MonoInitialiser(const InitialiseOptions& options, const Prepare
 
 bool MonoInitialiser::set_reference(ImageFeatures& image) {
   if (image.features == nullptr) preparer_.extract(image, options_.features);
-  reference_.reset();
+  reset();
   if (image.features->size() < options_.min_features) return false;
   reference_ = image;
   guess_.clear();
@@ -101,6 +103,13 @@ bool MonoInitialiser::set_reference(ImageFeatures& image) {
   history_.clear();
   if (options_.by_patches) tracks_.start(*image.pyramid, *image.features);
   return true;
+}
+
+bool MonoInitialiser::is_confirmed(const TwoViewResult& two_view) {
+  const std::optional<Eigen::Vector3d> before = std::exchange(way_before_, std::nullopt);
+  if (two_view.failure != TwoViewFailure::kNone) return false;
+  way_before_ = two_view.cur_from_ref.inverse().translation().normalized();
+  return before && before->dot(*way_before_) > kSameWay;
 }
 
 void MonoInitialiser::match_tracks(const ImageFeatures& image, Matches& matches) {
@@ -265,6 +274,10 @@ InitialiseResult MonoInitialiser::try_image(ImageFeatures& image, Map& map) {
   TwoViewResult two_view =
       solve(matches.pairs, matches.quality, result.used_homography, candidates);
   const std::optional<StartBundle> bundle = bundle_since_reference(two_view, candidates);
+  // After a turn, two views may agree on a motion that there was not: the next image finds another.
+  if (!is_confirmed(two_view) && !bundle && two_view.failure == TwoViewFailure::kNone) {
+    two_view.failure = TwoViewFailure::kAmbiguous;
+  }
   if (bundle) {
     two_view.failure = TwoViewFailure::kNone;
     two_view.cur_from_ref = bundle->newest_from_ref;

@@ -59,7 +59,10 @@ class MonoInitialiser {
   /// reference, at the origin) and 1 (this image) and their landmarks. The image is given features
   /// where they are needed.
   InitialiseResult try_image(ImageFeatures& image, Map& map);
-  void reset() { reference_.reset(); }
+  void reset() {
+    reference_.reset();
+    way_before_.reset();
+  }
   const std::optional<ImageFeatures>& reference() const { return reference_; }
 
  private:
@@ -70,6 +73,8 @@ class MonoInitialiser {
     std::vector<float> quality;  ///< lower is better
   };
   bool set_reference(ImageFeatures& image);
+  /// Whether the image before led the same way.
+  bool is_confirmed(const TwoViewResult& two_view);
   void match_tracks(const ImageFeatures& image, Matches& matches);
   /// The corners that are still followed, in every image since the reference.
   FollowedCorners followed() const;
@@ -96,6 +101,8 @@ class MonoInitialiser {
   /// order of the tracks, of which each image has some of those of the image before.
   std::vector<std::vector<std::pair<int, Eigen::Vector2d>>> history_;
   std::vector<Eigen::Vector2d> guess_;
+  /// Where the camera went by the image before, if that could have started: unit, in the reference.
+  std::optional<Eigen::Vector3d> way_before_;
 };
 
 /// RGB-D start from one image: a landmark for each keypoint with depth. Fails with too few of them.
