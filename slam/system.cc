@@ -51,6 +51,8 @@ SystemOptions with_common_values(SystemOptions options) {
   options.track.patches.match.levels = levels;
   options.mapping.describe.patches.levels = levels;
   options.mapping.describe.localise = options.track.localise;
+  // Those that see what the tracker found are enough.
+  options.mapping.describe.localise.neighbours_each = 0;
   options.mapping.describe.keypoints = options.orb.features;
   options.mapping.describe.min_corners = 2 * options.orb.features / 5;
   options.mapping.search.points = options.mapping.points;

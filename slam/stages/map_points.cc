@@ -29,11 +29,16 @@ bool scales_agree(const Keyframe& a, const Keypoint& in_a, const Keyframe& b, co
   return ratio * slack > octave_ratio && ratio < octave_ratio * slack;
 }
 
+/// Whether enough other keyframes see a landmark.
+bool seen_enough(const Landmark& landmark, const PointMappingOptions& options) {
+  return static_cast<int>(landmark.observations.size()) > options.redundant_observers;
+}
+
 /// Whether enough other keyframes see a landmark at the octave of keypoint `k` or finer.
 bool seen_enough_elsewhere(const Map& map, const Keyframe& keyframe, std::size_t k,
                            const PointMappingOptions& options) {
   const Landmark& landmark = map.landmarks.at(keyframe.landmarks[k]);
-  if (static_cast<int>(landmark.observations.size()) <= options.redundant_observers) return false;
+  if (!seen_enough(landmark, options)) return false;
   const int octave = keyframe.features->keypoints[k].octave;
   int observers = 0;
   for (const Observation& other : landmark.observations) {
@@ -49,19 +54,25 @@ bool seen_enough_elsewhere(const Map& map, const Keyframe& keyframe, std::size_t
 
 /// Whether nearly all of the keyframe's landmarks are seen enough elsewhere.
 bool is_redundant(const Map& map, const Keyframe& keyframe, const PointMappingOptions& options) {
-  const auto total =
-      keyframe.landmarks.size() - static_cast<std::size_t>(std::count(
-                                      keyframe.landmarks.begin(), keyframe.landmarks.end(), kNone));
-  // Most keyframes are needed, which a few landmarks show.
+  const std::size_t keypoints = keyframe.landmarks.size();
+  const auto total = keypoints - static_cast<std::size_t>(std::count(
+                                     keyframe.landmarks.begin(), keyframe.landmarks.end(), kNone));
   const double may_be_needed = (1.0 - options.redundant_share) * static_cast<double>(total);
-  int needed = 0;
-  // The last keypoints are those of the newest landmarks, which the fewest others see.
-  for (std::size_t k = keyframe.landmarks.size(); k-- > 0;) {
-    if (keyframe.landmarks[k] == kNone || seen_enough_elsewhere(map, keyframe, k, options))
-      continue;
-    if (++needed >= may_be_needed) return false;
-  }
-  return true;
+  const auto few_are_needed = [&](const auto& is_needed) {
+    int needed = 0;
+    for (std::size_t k = 0; k < keypoints; ++k) {
+      if (keyframe.landmarks[k] == kNone || !is_needed(k)) continue;
+      if (++needed >= may_be_needed) return false;
+    }
+    return true;
+  };
+  // Most keyframes are needed, which mere numbers of observers show; octaves lie far apart in
+  // memory.
+  return few_are_needed([&](std::size_t k) {
+           return !seen_enough(map.landmarks.at(keyframe.landmarks[k]), options);
+         }) &&
+         few_are_needed(
+             [&](std::size_t k) { return !seen_enough_elsewhere(map, keyframe, k, options); });
 }
 
 std::vector<LandmarkId> landmarks_in(const Keyframe& keyframe) {

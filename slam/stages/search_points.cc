@@ -20,7 +20,7 @@ namespace {
 
 /// Steps along an epipolar line, in pixels of the level: a patch's correlation falls over about
 /// two.
-constexpr double kStepPx = 1.0;
+constexpr double kStepPx = 1.5;
 /// Correlations so near to the best place, in steps, belong to the same peak.
 constexpr int kPeakSteps = 3;
 /// How far alignment may lead from the best step, in pixels of the level.

@@ -15,7 +15,7 @@ namespace planecast::slam {
 
 struct SearchPointsOptions {
   int neighbours = 3;    ///< keyframes whose keypoints are looked for
-  int max_points = 250;  ///< keypoints of a keyframe that are looked for, strongest first
+  int max_points = 175;  ///< keypoints of a keyframe that are looked for, strongest first
   int max_searches = 3;  ///< in which a keypoint may be looked for in vain
   /// Of the neighbour's median depth: with less, most points would fail the parallax test.
   double min_baseline_share = 0.02;
