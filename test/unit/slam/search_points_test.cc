@@ -84,8 +84,10 @@ void expect_landmarks_on_the_plane(const Camera& camera) {
   const std::size_t before = map.landmarks.size();
   PointMappingStats stats;
   SearchLog log;
-  const std::vector<Sighting> sightings = search_points(map, 1, camera, {}, log);
-  put_sightings(map, 1, camera, second.grey_or_bgr, 0.0, sightings, {}, preparer.extractor(),
+  SearchPointsOptions options;
+  options.max_points = 400;
+  const std::vector<Sighting> sightings = search_points(map, 1, camera, options, log);
+  put_sightings(map, 1, camera, second.grey_or_bgr, 0.0, sightings, options, preparer.extractor(),
                 stats);
 
   EXPECT_EQ(map.landmarks.size() - before, static_cast<std::size_t>(stats.triangulated));
