@@ -83,11 +83,7 @@ bool sample_with_rim(const cv::Mat& image, const Eigen::Vector2f& centre,
 using Lanes = float __attribute__((vector_size(32)));
 static_assert(kPatchSide == 8);
 
-inline Lanes lanes_at(const float* values) {
-  Lanes lanes;
-  std::memcpy(&lanes, values, sizeof(lanes));
-  return lanes;
-}
+inline void load(const float* values, Lanes& lanes) { std::memcpy(&lanes, values, sizeof(lanes)); }
 
 inline float total(const Lanes& lanes) {
   const float even = (lanes[0] + lanes[4]) + (lanes[2] + lanes[6]);
@@ -102,16 +98,23 @@ struct Comparison {
 
 PLANECAST_VECTOR_CLONES
 Comparison compare(const PatchTemplate& patch, const PatchValues& current) {
-  Lanes sum = {};
-  for (int i = 0; i < kPatchArea; i += kPatchSide) sum += lanes_at(current.data() + i);
+  Lanes sum = {}, grey, value, grad_x, grad_y;
+  for (int i = 0; i < kPatchArea; i += kPatchSide) {
+    load(current.data() + i, grey);
+    sum += grey;
+  }
   const float mean = total(sum) / kPatchArea;
   Lanes squares = {}, by_value = {}, by_x = {}, by_y = {};
   for (int i = 0; i < kPatchArea; i += kPatchSide) {
-    const Lanes centred = lanes_at(current.data() + i) - mean;
+    load(current.data() + i, grey);
+    load(patch.value.data() + i, value);
+    load(patch.grad_x.data() + i, grad_x);
+    load(patch.grad_y.data() + i, grad_y);
+    const Lanes centred = grey - mean;
     squares += centred * centred;
-    by_value += centred * lanes_at(patch.value.data() + i);
-    by_x += centred * lanes_at(patch.grad_x.data() + i);
-    by_y += centred * lanes_at(patch.grad_y.data() + i);
+    by_value += centred * value;
+    by_x += centred * grad_x;
+    by_y += centred * grad_y;
   }
   const float norm = std::sqrt(total(squares));
   if (norm < 1e-3F) return {0.0F, Eigen::Vector2f::Zero()};
