@@ -89,7 +89,12 @@ Keyframe make_keyframe(const ImageFeatures& image, const Pose& cam_from_world, c
 
 MonoInitialiser::MonoInitialiser(const InitialiseOptions& options, const PrepareOptions& prepare,
                                  const Camera& camera)
-    : options_(options), camera_(camera), preparer_(prepare, camera), tracks_(options.tracks) {}
+    : options_(options), camera_(camera), preparer_(prepare, camera), tracks_(options.tracks) {
+  // A corner's errors are so many pixels, which a short focal length makes a larger angle.
+  const double wider = std::max(1.0, options_.parallax_focal_px / std::abs(camera.fx));
+  options_.two_view.min_parallax_deg *= wider;
+  options_.bundle_parallax_deg *= wider;
+}
 
 bool MonoInitialiser::set_reference(ImageFeatures& image) {
   if (image.features == nullptr) preparer_.extract(image, options_.features);
@@ -147,7 +152,8 @@ std::optional<StartBundle> MonoInitialiser::bundle_since_reference(
   const bool may_start = two_view.failure == TwoViewFailure::kNone ||
                          two_view.failure == TwoViewFailure::kTooLittleParallax ||
                          two_view.failure == TwoViewFailure::kAmbiguous;
-  if (!options_.by_patches || !may_start || two_view.parallax_deg < options_.bundle_parallax_deg) {
+  if (!options_.by_patches || !may_start ||
+      two_view.median_parallax_deg < options_.bundle_parallax_deg) {
     return std::nullopt;
   }
   return bundle_best_start(camera_, followed(), candidates, options_.start_bundle);

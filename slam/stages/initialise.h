@@ -35,6 +35,8 @@ struct InitialiseOptions {
   /// Two views with less parallax than two_view asks for, but at least this, may still start if all
   /// frames since the reference together fix the depths (by_patches alone).
   double bundle_parallax_deg = 0.4;
+  /// Up to this focal length, more parallax is asked of a shorter one: 640 pixels wide, 60 degrees.
+  double parallax_focal_px = 554.0;
   StartBundleOptions start_bundle;
   std::uint64_t seed = 1;
   ScaleLevels levels;
