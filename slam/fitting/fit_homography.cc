@@ -39,6 +39,9 @@ RansacOptions ransac_options(const HomographyOptions& options, std::uint64_t see
   result.threshold = options.threshold_px * scale;
   result.max_rms = options.max_rms_px * scale;
   result.lambda = options.lambda;
+  // A plane's leak is told by its neighbours, which share its residuals; a match is told by its
+  // own.
+  result.pairs_by_contrast = true;
   result.min_inliers = options.min_inliers;
   result.min_inlier_ratio = options.min_inlier_ratio;
   result.graph_cut = options.graph_cut;

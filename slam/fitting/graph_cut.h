@@ -7,11 +7,22 @@
 
 namespace planecast::slam {
 
+/// The weight of neighbours.
+struct PairOptions {
+  double lambda = 0.0;
+  /// lambda_pq = lambda (1 - |K_p - K_q|) instead of lambda [D], as contrast weighs the pairs of a
+  /// segmentation (Boykov and Jolly, ICCV 2001): of two neighbours one of which fits and one does
+  /// not, neither says anything about the other, and what a mask leaked in takes no true points
+  /// along.
+  bool by_contrast = false;
+};
+
 /// Inlier-outlier labelling by a minimum cut, with the energy of Graph-Cut RANSAC (Barath and
 /// Matas, CVPR 2018, equations 1-3). K_p = exp(-r_p^2 / (2 eps^2)) is point p's kernel:
 ///   unary            p outlier: K_p                  p inlier: 1 - K_p
-///   pair, x lambda   both outliers: (K_p + K_q) / 2  both inliers: 1 - (K_p + K_q) / 2  different:
-///   1
+///   pair, x lambda_pq  both outliers: (K_p + K_q) / 2  both inliers: 1 - (K_p + K_q) / 2
+///                      different: 1
+/// with lambda_pq as PairOptions says.
 /// Later public implementations charge nothing for two far points both labelled inlier; with that
 /// form a spatial cluster of gross outliers becomes inlier at the lambdas used here, with this one
 /// it does not. A gross outlier amid inliers may still be labelled inlier: callers also gate by the
@@ -26,7 +37,7 @@ class GraphCut {
   /// Labels every point: inlier[p] = 1 or 0, ties outlier. Costs are exact to 2^-20. Reuses its
   /// memory.
   void label(const std::vector<double>& kernel, const std::vector<NeighbourPair>& neighbours,
-             double lambda, std::vector<char>& inlier);
+             const PairOptions& options, std::vector<char>& inlier);
 
  private:
   struct Graph;
@@ -36,7 +47,7 @@ class GraphCut {
 
 /// The energy of a labelling, as defined above; for tests and reports.
 double labelling_energy(const std::vector<double>& kernel,
-                        const std::vector<NeighbourPair>& neighbours, double lambda,
+                        const std::vector<NeighbourPair>& neighbours, const PairOptions& options,
                         const std::vector<char>& inlier);
 
 }  // namespace planecast::slam

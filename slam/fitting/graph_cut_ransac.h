@@ -22,6 +22,7 @@ struct RansacOptions {
   /// as all points: with eight neighbours of full weight each, a point at the border of what a mask
   /// leaked in is labelled by its neighbours alone.
   double lambda = 0.975;
+  bool pairs_by_contrast = false;  ///< PairOptions::by_contrast
   /// [D] Charged for each point between 1 and 3 thresholds. At 0.6 points strewn evenly through
   /// space score nothing; 0 is the plain score.
   double background_cost = 0.0;
@@ -81,8 +82,9 @@ class GraphCutRansac {
         options_(options),
         random_(options.seed),
         n_(model.size()),
-        pair_lambda_(options.lambda *
-                     std::min(1.0, n_ / std::max(1.0, static_cast<double>(neighbours.size())))),
+        pairs_{options.lambda *
+                   std::min(1.0, n_ / std::max(1.0, static_cast<double>(neighbours.size()))),
+               options.pairs_by_contrast},
         kernel_(static_cast<std::size_t>(n_)),
         label_(static_cast<std::size_t>(n_)) {
     candidates_.reserve(kernel_.size());
@@ -110,6 +112,9 @@ class GraphCutRansac {
   static constexpr int kBlock = 128;
   /// [D] Distance, in thresholds, beyond which a point supports nothing: K falls below 0.14 there.
   static constexpr double kSupportReach = 2.0;
+  /// [D] Distance, in thresholds, up to which what the cut labels inlier is fitted to. A wider
+  /// reach takes in what adjoins at the border, and the fit settles between both.
+  static constexpr double kCutReach = 1.5;
   static constexpr double kBackgroundReach = 3.0;
   /// Growth of the support that is worth another cut.
   static constexpr double kGrowth = 1.002;
@@ -165,10 +170,14 @@ class GraphCutRansac {
       ++result.samples;
       sampler_.draw(random_, sample.data());
       if (!model_.fit_minimal(sample.data(), model)) continue;
-      const Support support = support_of(model, best_score_);
+      // [D] A sample is compared with samples. Against a model that was optimised already the bare
+      // sample of a better one would lose and never be optimised itself.
+      Support support = support_of(model, best_sample_score_);
+      if (support.score <= best_sample_score_) continue;
+      best_sample_score_ = support.score;
+      if (options_.graph_cut) optimise_locally(model, support, result);
       if (support.score <= best_score_) continue;
       take_best(model, support);
-      if (options_.graph_cut) optimise_locally(result);
       needed = std::min(options_.max_inner, samples_needed());
     }
   }
@@ -191,21 +200,24 @@ class GraphCutRansac {
 
   /// Cut, fit to random subsets of the cut's inliers, again while the support grows (Barath and
   /// Matas 2018, Algorithm 2).
-  void optimise_locally(Result& result) {
+  void optimise_locally(Parameters& best, Support& best_support, Result& result) {
     const int size = 7 * Model::kSampleSize;
     Parameters model;
     for (int cut = 0; cut < options_.max_cuts; ++cut) {
-      label_by_cut(best_, kSupportReach, result);
+      label_by_cut(best, kCutReach, result);
       if (static_cast<int>(candidates_.size()) <= Model::kSampleSize) return;
-      const double before = best_score_;
+      const double before = best_support.score;
       for (int s = 0; s < options_.subsets_per_cut; ++s) {
         draw_subset(size);
         if (!model_.fit_least_squares(subset_, model)) continue;
-        const Support support = support_of(model, best_score_);
-        if (support.score > best_score_) take_best(model, support);
+        const Support support = support_of(model, best_support.score);
+        if (support.score > best_support.score) {
+          best = model;
+          best_support = support;
+        }
         if (static_cast<int>(candidates_.size()) <= size) break;
       }
-      if (best_score_ <= kGrowth * before) return;
+      if (best_support.score <= kGrowth * before) return;
     }
   }
 
@@ -219,7 +231,7 @@ class GraphCutRansac {
       ++result.cuts;
       for (int i = 0; i < n_; ++i)
         kernel_[i] = in_reach(squared_[i]) ? kernel_of(squared_[i]) : 0.0;
-      cut_.label(kernel_, neighbours_, pair_lambda_, label_);
+      cut_.label(kernel_, neighbours_, pairs_, label_);
     } else {
       std::fill(label_.begin(), label_.end(), 1);
     }
@@ -281,9 +293,10 @@ class GraphCutRansac {
   RansacOptions options_;
   Random random_;
   int n_;
-  double pair_lambda_;  ///< weight of one pair
+  PairOptions pairs_;
   Parameters best_{};
   double best_score_ = 0.0;
+  double best_sample_score_ = 0.0;  ///< before any optimisation
   int best_inliers_ = 0;
   GraphCut cut_;
   std::vector<double> kernel_;

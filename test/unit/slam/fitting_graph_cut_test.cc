@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 #include <vector>
 
 #include "planes_world.h"
@@ -14,13 +15,13 @@ namespace {
 
 /// The best of all labellings by trying each.
 double least_energy(const std::vector<double>& kernel, const std::vector<NeighbourPair>& pairs,
-                    double lambda) {
+                    const PairOptions& options) {
   const int n = static_cast<int>(kernel.size());
   double best = HUGE_VAL;
   std::vector<char> inlier(kernel.size());
   for (int bits = 0; bits < (1 << n); ++bits) {
     for (int i = 0; i < n; ++i) inlier[i] = static_cast<char>((bits >> i) & 1);
-    best = std::min(best, labelling_energy(kernel, pairs, lambda, inlier));
+    best = std::min(best, labelling_energy(kernel, pairs, options, inlier));
   }
   return best;
 }
@@ -41,26 +42,27 @@ TEST(GraphCut, FindsTheLeastEnergyOfAllLabellings) {
       }
     }
     const double lambda = trial % 2 == 0 ? 0.6 : 0.975;
+    const PairOptions options{lambda, trial % 5 < 2};
     std::vector<char> inlier;
-    cut.label(kernel, pairs, lambda, inlier);
+    cut.label(kernel, pairs, options, inlier);
     // Every cost is rounded to 2^-20 once per point and per end of a pair.
     const double rounding = std::ldexp(static_cast<double>(n + 4 * pairs.size()), -20);
-    EXPECT_NEAR(labelling_energy(kernel, pairs, lambda, inlier),
-                least_energy(kernel, pairs, lambda), rounding)
+    EXPECT_NEAR(labelling_energy(kernel, pairs, options, inlier),
+                least_energy(kernel, pairs, options), rounding)
         << "trial " << trial;
   }
 }
 
 TEST(GraphCut, WithoutNeighboursTheKernelDecides) {
   std::vector<char> inlier;
-  GraphCut().label({0.9, 0.5, 0.1}, {}, 0.6, inlier);
+  GraphCut().label({0.9, 0.5, 0.1}, {}, {0.6}, inlier);
   EXPECT_EQ(inlier, (std::vector<char>{1, 0, 0}));
 }
 
 /// Inliers of a plane over a square and, away from them, a tight cluster of gross outliers: of the
 /// cluster nothing may be labelled inlier. The form of later implementations, which charges nothing
 /// for two far points both labelled inlier, marks over 90 % of it.
-class ClusteredOutliers : public ::testing::TestWithParam<double> {};
+class ClusteredOutliers : public ::testing::TestWithParam<std::tuple<double, bool>> {};
 
 TEST_P(ClusteredOutliers, AreNotInliers) {
   auto generator = test_generator();
@@ -78,14 +80,16 @@ TEST_P(ClusteredOutliers, AreNotInliers) {
     const auto pairs = radius_neighbours(points, 2.0 * eps, max_neighbours);
     ASSERT_GT(pairs.size(), 400U);
     std::vector<char> inlier;
-    GraphCut().label(kernel, pairs, GetParam(), inlier);
+    const auto& [lambda, by_contrast] = GetParam();
+    GraphCut().label(kernel, pairs, {lambda, by_contrast}, inlier);
     EXPECT_EQ(std::accumulate(inlier.begin() + 300, inlier.end(), 0), 0);
     // At 0.3 eps noise a kernel under 0.5 would be a 3.9 sigma point.
     EXPECT_GE(std::accumulate(inlier.begin(), inlier.begin() + 300, 0), 298);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Lambdas, ClusteredOutliers, ::testing::Values(0.6, 0.975));
+INSTANTIATE_TEST_SUITE_P(Lambdas, ClusteredOutliers,
+                         ::testing::Combine(::testing::Values(0.6, 0.975), ::testing::Bool()));
 
 TEST(Neighbourhood, RadiusSearchFindsExactlyThePairsWithin) {
   auto generator = test_generator();
