@@ -54,19 +54,25 @@ PlaneScale scale_at(const Map& map, KeyframeId keyframe, const PlaneMappingOptio
 PlaneMapper::PlaneMapper(const PlaneMappingOptions& options, const Camera& camera, bool rgbd)
     : options_(options), camera_(camera), rgbd_(rgbd) {}
 
+PlaneContext PlaneMapper::context_of(const Map& map) const {
+  /// Landmarks of fewer keyframes fill any slab.
+  constexpr std::size_t kYoung = 8;
+  return {options_, scale_, camera_, rgbd_, map.keyframes.size() < kYoung};
+}
+
 void PlaneMapper::cull_non_planar(Map& map, KeyframeId keyframe, PlaneMappingStats& stats) {
   if (!map.keyframes.contains(keyframe)) return;
   const StepTimer timer(stats.cull_ms);
   scale_ = scale_at(map, keyframe, options_, rgbd_, scale_);
   if (!(scale_.eps_d > 0.0)) return;
-  stats.culled += cull_far_landmarks(map, keyframe, {options_, scale_, camera_, rgbd_});
+  stats.culled += cull_far_landmarks(map, keyframe, context_of(map));
 }
 
 void PlaneMapper::update(Map& map, KeyframeId keyframe, PlaneMappingStats& stats) {
   if (!map.keyframes.contains(keyframe)) return;
   if (!(scale_.eps_d > 0.0)) scale_ = scale_at(map, keyframe, options_, rgbd_, scale_);
   if (!(scale_.eps_d > 0.0)) return;
-  const PlaneContext context{options_, scale_, camera_, rgbd_};
+  const PlaneContext context = context_of(map);
   KeyframePoints shown;
   std::vector<GrowingPlane> growing;
   {
@@ -102,7 +108,7 @@ void PlaneMapper::update(Map& map, KeyframeId keyframe, PlaneMappingStats& stats
 
 void PlaneMapper::follow_map(Map& map) {
   if (!(scale_.eps_d > 0.0)) return;
-  refit_planes(map, {options_, scale_, camera_, rgbd_});
+  refit_planes(map, context_of(map));
 }
 
 }  // namespace planecast::slam

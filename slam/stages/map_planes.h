@@ -41,6 +41,8 @@ struct PlaneMappingStats {
   double cull_ms = 0.0, new_ms = 0.0, merge_expand_ms = 0.0, reestimate_ms = 0.0, refine_ms = 0.0;
 };
 
+struct PlaneContext;
+
 /// The plane steps of local mapping (the paper's section "Local Mapping with Plane Expanded and
 /// Re-estimated"). Each is its own function; state between calls is in the map alone, but for the
 /// scale.
@@ -58,6 +60,8 @@ class PlaneMapper {
   PlaneScale scale() const { return scale_; }
 
  private:
+  PlaneContext context_of(const Map& map) const;
+
   PlaneMappingOptions options_;
   Camera camera_;
   bool rgbd_;

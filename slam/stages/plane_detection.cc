@@ -6,6 +6,7 @@
 
 #include "slam/fitting/graph_cut_ransac.h"
 #include "slam/fitting/neighbourhood.h"
+#include "slam/fitting/plane_mixture.h"
 #include "slam/fitting/plane_model.h"
 #include "slam/fitting/samplers.h"
 #include "slam/fitting/sequential.h"
@@ -147,6 +148,9 @@ class PlaneFinder {
     options.threshold = threshold;
     options.max_rms = context_.scale.eps_pi;
     options.lambda = context_.options.lambda;
+    // What leaks into a mask is told by its neighbours. Without masks everything adjoins something
+    // else, and true points would go out with it.
+    options.pairs_by_contrast = !shown_.has_masks;
     options.min_inliers = context_.options.min_inliers;
     options.min_inlier_ratio = min_ratio;
     options.graph_cut = context_.options.graph_cut;
@@ -203,25 +207,18 @@ class PlaneFinder {
     return result;
   }
 
-  /// From eps_d down to the plane's own inlier distance: takes in what lies within and refits.
-  /// False where what is left is degenerate or thicker than eps_Pi.
+  /// Brings the plane from among what stands before it onto its own points, and its inlier distance
+  /// down to its own. False where it is degenerate or thicker than eps_Pi.
   bool tighten(const std::vector<int>& pool, PlaneCandidate& candidate) const {
-    constexpr int kRounds = 4;
-    candidate.eps = context_.scale.eps_d;
-    double rms = 0.0;
-    for (int round = 0; round < kRounds; ++round) {
-      candidate.inliers = near(pool, candidate, candidate.eps);
-      const auto fitted = fit_plane(shown_.points.positions, candidate.inliers, weights_);
-      if (!fitted) return false;
-      const bool turned = fitted->plane.normal.dot(candidate.plane.normal) < 0.0;
-      candidate.plane = turned ? fitted->plane.flipped() : fitted->plane;
-      rms = fitted->rms;
-      const PlanePoints support =
-          select(shown_.points, near(pool, candidate, context_.scale.eps_d));
-      candidate.eps = own_eps(candidate.plane, support, context_.scale);
-    }
+    const PlaneMixtureOptions options = mixture_options(context_.scale);
+    const auto mixture = fit_plane_mixture(shown_.points, near(pool, candidate, options.reach),
+                                           candidate.plane, options);
+    if (!mixture) return false;
+    candidate.plane = mixture->plane;
+    candidate.eps = eps_of_sigma(mixture->sigma, context_.scale);
     candidate.inliers = near(pool, candidate, candidate.eps);
-    return rms < context_.scale.eps_pi;
+    const auto fitted = fit_plane(shown_.points.positions, candidate.inliers, weights_);
+    return fitted && fitted->rms < context_.scale.eps_pi;
   }
 
   bool is_plausible(const PlaneCandidate& candidate) const {

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <optional>
 
 #include "slam/geometry/random.h"
 #include "slam/stages/plane_steps.h"
@@ -10,14 +11,18 @@ namespace planecast::slam {
 
 namespace {
 
-/// Subsets tried per re-estimation.
+/// Subsets of either size tried per re-estimation.
 constexpr int kSubsets = 12;
 /// Share of the support in each subset [P].
 constexpr double kSubsetShare = 0.6;
+constexpr std::size_t kFewest = 3;
 /// Points that a re-estimation looks at; more would only take time.
-constexpr int kMostPoints = 250;
+constexpr int kMostPoints = 400;
 /// Growth of the score that is worth a new equation.
 constexpr double kBetter = 1.001;
+/// [D] Of the own support's score that a new equation must keep: a plane is refined, not exchanged
+/// for another that runs through its surroundings.
+constexpr double kKept = 0.75;
 /// Distance, in bands, beyond which support is let go.
 constexpr double kFarBands = 1.5;
 /// Landmarks of a plane in a keyframe for it to count as seen there.
@@ -25,10 +30,10 @@ constexpr int kSeenLandmarks = 3;
 
 /// Sum of Gaussian kernels of the points' distances over their bands.
 double score_of(const PlaneEquation& plane, const PlanePoints& points,
-                const std::vector<int>& indices, double eps_d) {
+                const std::vector<int>& indices, double eps) {
   double score = 0.0;
   for (const int i : indices) {
-    const double r = plane.signed_distance(points.positions[i]) / (points.band[i] * eps_d);
+    const double r = plane.signed_distance(points.positions[i]) / (points.band[i] * eps);
     if (points.view_from[i].dot(plane.normal) > 0.0) score += std::exp(-0.5 * r * r);
   }
   return score;
@@ -60,34 +65,83 @@ std::vector<int> evenly(int n) {
   return result;
 }
 
-bool reestimate(Plane& plane, const PlaneSupport& support, const PlaneContext& context,
-                std::uint64_t seed) {
-  const PlanePoints& points = support.points;
-  std::vector<int> pool = evenly(points.size());
-  const int size = static_cast<int>(std::lround(kSubsetShare * static_cast<double>(pool.size())));
-  if (size < 3) return false;
+/// The best, for the tightest inlier distance, of fits to random subsets of the pool: to 60 % of it
+/// [P], and to as few points as make a plane [D], for every large subset holds its share of what
+/// does not belong.
+std::optional<PlaneEquation> best_of_subsets(const PlanePoints& points, std::vector<int> pool,
+                                             const Eigen::Vector3d& normal,
+                                             const PlaneContext& context, Random& random) {
+  const auto large =
+      static_cast<std::size_t>(std::lround(kSubsetShare * static_cast<double>(pool.size())));
   const std::vector<double> weights = weights_of(points);
-  const PlaneEquation present{plane.normal, plane.offset};
-  PlaneEquation best = present;
-  const double present_score = score_of(present, points, pool, context.scale.eps_d);
-  double best_score = present_score;
-  Random random(seed);
-  std::vector<int> subset(static_cast<std::size_t>(size));
-  for (int k = 0; k < kSubsets; ++k) {
-    for (int i = 0; i < size; ++i) {
-      std::swap(pool[i], pool[i + random.below(static_cast<int>(pool.size()) - i)]);
-      subset[i] = pool[i];
+  const double eps = eps_of_sigma(0.0, context.scale);
+  std::optional<PlaneEquation> best;
+  double best_score = 0.0;
+  for (int k = 0; k < 2 * kSubsets; ++k) {
+    const std::size_t size = k % 2 == 0 ? large : static_cast<std::size_t>(kFewest);
+    for (std::size_t i = 0; i < size; ++i) {
+      std::swap(pool[i], pool[i + random.below(static_cast<int>(pool.size() - i))]);
     }
+    const std::vector<int> subset(pool.begin(), pool.begin() + static_cast<std::ptrdiff_t>(size));
     const auto fit = fit_plane(points.positions, subset, weights);
     if (!fit) continue;
-    const PlaneEquation candidate = facing(fit->plane, plane.normal);
-    const double score = score_of(candidate, points, pool, context.scale.eps_d);
+    const PlaneEquation candidate = facing(fit->plane, normal);
+    const double score = score_of(candidate, points, pool, eps);
     if (score <= best_score) continue;
     best_score = score;
     best = candidate;
   }
-  if (best_score <= kBetter * present_score) return false;
-  plane.refit(best.normal, best.offset);
+  return best;
+}
+
+/// Adds to the plane's support, thinned, the landmarks that no plane owns about it [D]: judged by
+/// its own support alone a tilted plane would confirm itself, for what it misses is not in there.
+PlanePoints with_surroundings(const Map& map, const PlanePoints& support,
+                              const PlaneContext& context) {
+  PlanePoints points;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  for (const int i : evenly(support.size())) {
+    points.positions.push_back(support.positions[i]);
+    points.view_from.push_back(support.view_from[i]);
+    points.band.push_back(support.band[i]);
+    centre += support.positions[i];
+  }
+  centre /= std::max(points.size(), 1);
+  double squared_radius = 0.0;
+  for (const Eigen::Vector3d& point : points.positions) {
+    squared_radius = std::max(squared_radius, (point - centre).squaredNorm());
+  }
+  for (const Landmark& landmark : map.landmarks) {
+    if (map.planes.contains(landmark.plane) || landmark.observations.empty()) continue;
+    if ((landmark.position - centre).squaredNorm() > squared_radius) continue;
+    points.positions.push_back(landmark.position);
+    points.view_from.push_back(landmark.view_from);
+    points.band.push_back(band_of_landmark(map, landmark, context));
+  }
+  return points;
+}
+
+bool reestimate(const Map& map, Plane& plane, const PlaneSupport& support,
+                const PlaneContext& context, std::uint64_t seed) {
+  const bool alone = plane.label > 0;  // what its mask left out is not on it
+  const PlanePoints points =
+      alone ? support.points : with_surroundings(map, support.points, context);
+  const std::vector<int> pool = evenly(points.size());
+  if (pool.size() < 2 * kFewest) return false;
+  Random random(seed);
+  const PlaneEquation present{plane.normal, plane.offset};
+  std::vector<PlaneEquation> starts = {present};
+  const auto rival = best_of_subsets(points, pool, plane.normal, context, random);
+  if (rival) starts.push_back(*rival);
+  const auto best = fit_plane_mixture(points, pool, starts, mixture_options(context.scale));
+  if (!best) return false;
+  const double eps = eps_of_sigma(best->sigma, context.scale);
+  const auto gain = [&](const PlanePoints& over) {
+    const std::vector<int> all = evenly(over.size());
+    return score_of(best->plane, over, all, eps) / score_of(present, over, all, eps);
+  };
+  if (!(gain(points) > kBetter) || !(gain(support.points) > kKept)) return false;
+  plane.refit(best->plane.normal, best->plane.offset);
   return true;
 }
 
@@ -154,6 +208,10 @@ bool refit_robustly(Plane& plane, const PlaneSupport& support, const PlaneContex
       if (distance[i] < gate) used.push_back(i);
     }
   }
+  const PlaneMixtureOptions options = mixture_options(context.scale);
+  const PlaneEquation present{plane.normal, plane.offset};
+  const auto mixture = fit_plane_mixture(points, used, std::vector{equation, present}, options);
+  if (mixture) equation = mixture->plane;
   plane.refit(equation.normal, equation.offset);
   return true;
 }
@@ -165,7 +223,8 @@ int reestimate_planes(Map& map, KeyframeId keyframe, const PlaneContext& context
   for (Plane& plane : map.planes) {
     if (!seen[plane.id]) continue;
     const std::uint64_t task = static_cast<std::uint64_t>(keyframe) * 4096 + plane.id;
-    changed += reestimate(plane, support[plane.id], context, mix_seed(context.options.seed, task));
+    changed +=
+        reestimate(map, plane, support[plane.id], context, mix_seed(context.options.seed, task));
     release_far_support(map, plane, support[plane.id], context);
   }
   return changed;

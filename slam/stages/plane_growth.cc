@@ -223,7 +223,8 @@ void doubt_planes(Map& map, const PlaneContext& context, const KeyframePoints& s
     }
     candidate.eps = own_eps(candidate.plane, support, context.scale);
     if (static_cast<int>(candidate.inliers.size()) < kMinJudged) continue;
-    const bool good = coherence(shown, candidate) > kDoubtfulCoherence &&
+    const bool thin = !may_be_slab(plane, support, context);
+    const bool good = thin && coherence(shown, candidate) > kDoubtfulCoherence &&
                       contrast(map, shown, candidate, context.scale) > kDoubtfulContrast;
     plane.doubts = good ? std::max(plane.doubts - 1, 0) : plane.doubts + 1;
   }

@@ -16,6 +16,9 @@ namespace {
 constexpr double kMaxBand = 2.5;
 /// [D] Depth samples per image row: enough for a plane of a hundredth of the image to have 8.
 constexpr int kSamplesPerRow = 32;
+/// Of own_eps: the least, in eps_d, and its standard deviations.
+constexpr double kTightest = 0.35;
+constexpr double kSigmas = 3.0;
 
 void append_landmarks(const Map& map, const Keyframe& keyframe, const PlaneContext& context,
                       KeyframePoints& out) {
@@ -75,6 +78,15 @@ double band_of(const PlaneContext& context, double z_m) {
   return std::clamp(3.0 * depth_sigma_m(z_m) / context.scale.eps_d, 1.0, kMaxBand);
 }
 
+double band_of_landmark(const Map& map, const Landmark& landmark, const PlaneContext& context) {
+  constexpr double kNearest_m = 0.4;
+  const Keyframe* first = landmark.observations.empty()
+                              ? nullptr
+                              : map.keyframes.find(landmark.observations.front().keyframe);
+  const double z = first == nullptr ? 0.0 : (first->cam_from_world * landmark.position).z();
+  return band_of(context, std::max(z, kNearest_m));
+}
+
 KeyframePoints gather_points(const Map& map, KeyframeId id, const PlaneContext& context) {
   KeyframePoints result;
   const Keyframe* keyframe = map.keyframes.find(id);
@@ -94,14 +106,10 @@ std::vector<PlaneSupport> gather_support(const Map& map, const PlaneContext& con
   for (const Landmark& landmark : map.landmarks) {
     if (!map.planes.contains(landmark.plane)) continue;
     PlaneSupport& support = result[static_cast<std::size_t>(landmark.plane)];
-    const Keyframe* first = landmark.observations.empty()
-                                ? nullptr
-                                : map.keyframes.find(landmark.observations.front().keyframe);
-    const double z = first == nullptr ? 0.0 : (first->cam_from_world * landmark.position).z();
     support.landmarks.push_back(landmark.id);
     support.points.positions.push_back(landmark.position);
     support.points.view_from.push_back(landmark.view_from);
-    support.points.band.push_back(band_of(context, std::max(z, 0.4)));
+    support.points.band.push_back(band_of_landmark(map, landmark, context));
   }
   std::vector<std::optional<Eigen::Vector3d>> centres(
       static_cast<std::size_t>(map.keyframes.next_id()));
@@ -120,8 +128,6 @@ std::vector<PlaneSupport> gather_support(const Map& map, const PlaneContext& con
 }
 
 double own_eps(const PlaneEquation& plane, const PlanePoints& support, const PlaneScale& scale) {
-  constexpr double kTightest = 0.35;
-  constexpr double kSigmas = 3.0;
   constexpr double kSigmaOfMedian = 1.4826;  // normal distribution
   if (support.positions.empty()) return scale.eps_d;
   std::vector<double> distance;
@@ -131,7 +137,24 @@ double own_eps(const PlaneEquation& plane, const PlanePoints& support, const Pla
   }
   const auto middle = distance.begin() + static_cast<std::ptrdiff_t>(distance.size() / 2);
   std::nth_element(distance.begin(), middle, distance.end());
-  return std::clamp(kSigmas * kSigmaOfMedian * *middle, kTightest * scale.eps_d, scale.eps_d);
+  return eps_of_sigma(kSigmaOfMedian * *middle, scale);
+}
+
+double eps_of_sigma(double sigma, const PlaneScale& scale) {
+  return std::clamp(kSigmas * sigma, kTightest * scale.eps_d, scale.eps_d);
+}
+
+bool is_sharp(double own_eps, const PlaneScale& scale) {
+  constexpr double kSharp = 0.95;
+  return own_eps < kSharp * scale.eps_d;
+}
+
+PlaneMixtureOptions mixture_options(const PlaneScale& scale) {
+  PlaneMixtureOptions options;
+  options.reach = 2.0 * scale.eps_d;
+  options.min_sigma = kTightest * scale.eps_d / kSigmas;
+  options.max_sigma = scale.eps_pi;
+  return options;
 }
 
 int strong_support(const Plane& plane, const PlaneMappingOptions& options) {
@@ -141,6 +164,11 @@ int strong_support(const Plane& plane, const PlaneMappingOptions& options) {
 int least_observers(const Plane& plane, const PlaneContext& context) {
   if (context.rgbd) return 1;
   return plane.label > 0 ? 2 : 3;
+}
+
+bool may_be_slab(const Plane& plane, const PlanePoints& support, const PlaneContext& context) {
+  if (plane.label > 0 || context.young || context.options.merge == PlaneMerge::kPaper) return false;
+  return !is_sharp(own_eps({plane.normal, plane.offset}, support, context.scale), context.scale);
 }
 
 void update_figures(Plane& plane, const PlaneSupport& support, const PlaneContext& context) {
@@ -155,7 +183,8 @@ void update_figures(Plane& plane, const PlaneSupport& support, const PlaneContex
   plane.rms = weight > 0.0 ? std::sqrt(sum / weight) : 0.0;
   plane.inliers = static_cast<int>(support.landmarks.size());
   plane.weak = support.points.size() < strong_support(plane, context.options) ||
-               static_cast<int>(plane.observers.size()) < least_observers(plane, context);
+               static_cast<int>(plane.observers.size()) < least_observers(plane, context) ||
+               may_be_slab(plane, support.points, context);
 }
 
 void add_depth_point(Plane& plane, KeyframeId keyframe, const Eigen::Vector3d& position,

@@ -6,6 +6,7 @@
 #include "slam/data/camera.h"
 #include "slam/data/map.h"
 #include "slam/fitting/neighbourhood.h"
+#include "slam/fitting/plane_mixture.h"
 #include "slam/fitting/plane_model.h"
 #include "slam/stages/map_planes.h"
 
@@ -17,11 +18,15 @@ struct PlaneContext {
   PlaneScale scale;
   Camera camera;
   bool rgbd = false;
+  bool young = false;  ///< so few keyframes that no plane of the map can be thin yet
 };
 
 /// A point's inlier band, as a multiple of eps_d: in RGB-D max(eps_d, 3 sigma_z(z)) at depth z_m in
 /// metres, bounded to 2.5 eps_d, beyond which depth is too vague to tell planes; mono: 1.
 double band_of(const PlaneContext& context, double z_m);
+
+/// The same of a landmark, at its depth in the first keyframe that sees it.
+double band_of_landmark(const Map& map, const Landmark& landmark, const PlaneContext& context);
 
 /// What one keyframe shows that planes can be made of: its landmarks and, in RGB-D, samples of its
 /// depth on a coarse grid. All vectors are parallel.
@@ -52,6 +57,20 @@ std::vector<PlaneSupport> gather_support(const Map& map, const PlaneContext& con
 /// Support that fills a slab evenly keeps eps_d; a plane that is thinner is held to what it is, so
 /// that steps, books and the like beside it stay out.
 double own_eps(const PlaneEquation& plane, const PlanePoints& support, const PlaneScale& scale);
+/// The same of a deviation that is known.
+double eps_of_sigma(double sigma, const PlaneScale& scale);
+
+/// Whether the support is thinner than the slab that it was cut out by [D]. What fills the slab may
+/// be things that stand about: nothing is moved onto such a plane, or it would make itself true.
+bool is_sharp(double own_eps, const PlaneScale& scale);
+
+/// Whether a plane for which no mask speaks is as thick as the slab it was cut out by, in a map old
+/// enough for it to be thin: it stays weak.
+bool may_be_slab(const Plane& plane, const PlanePoints& support, const PlaneContext& context);
+
+/// How a plane is told from what stands before it: among the points up to 2 eps_d off, with a
+/// deviation between a third of the tightest own_eps and eps_Pi.
+PlaneMixtureOptions mixture_options(const PlaneScale& scale);
 
 /// Support below which the plane is weak. [D] Twice the option for one that was found without a
 /// mask and so has no second witness.

@@ -118,10 +118,16 @@ RefineCounts project_landmarks(Map& map, KeyframeId keyframe, const PlaneContext
     const Landmark* landmark = map.landmarks.find(id);
     if (landmark != nullptr && map.planes.contains(landmark->plane)) seen[landmark->plane] = 1;
   }
+  const std::vector<PlaneSupport> support = gather_support(map, context);
+  for (const Plane& plane : map.planes) {
+    const PlanePoints& points = support[static_cast<std::size_t>(plane.id)].points;
+    const double eps = own_eps({plane.normal, plane.offset}, points, context.scale);
+    if (plane.weak || !is_sharp(eps, context.scale)) seen[static_cast<std::size_t>(plane.id)] = 0;
+  }
   for (Landmark& landmark : map.landmarks) {
     if (landmark.plane == kNone || !map.planes.contains(landmark.plane)) continue;
     const Plane& plane = map.planes.at(landmark.plane);
-    if (!seen[plane.id] || plane.weak) continue;
+    if (!seen[plane.id]) continue;
     const double distance = plane.signed_distance(landmark.position);
     if (std::abs(distance) > context.scale.eps_d) continue;
     const Eigen::Vector3d projected = landmark.position - distance * plane.normal;

@@ -156,6 +156,53 @@ TEST(PlaneMapper, OneWallSeenFromTwoEndsMergesAndItsIdSurvives) {
   EXPECT_EQ(static_cast<int>(map.landmarks_of(0).size()), wall.inliers);
 }
 
+/// A wall of 100 landmarks with masks; more landmarks can be added before build().
+struct Wall {
+  MapBuilder builder{test_camera()};
+  std::vector<KeyframeId> views = add_pair(builder, {0, 0, 0}, {0, 0, 2});
+
+  explicit Wall(std::mt19937& generator) {
+    add_all(builder, strew(generator, 100, {-0.5, -0.5, 2.0}, {1, 0, 0}, {0, 1, 0}, 0.004), views,
+            1);
+  }
+};
+
+TEST(PlaneMapper, ThingsAtOneEndDoNotTiltATable) {
+  auto generator = test_generator();
+  std::uniform_real_distribution<double> height(0.0, 0.07);
+  for (int trial = 0; trial < 10; ++trial) {
+    MapBuilder builder(test_camera());
+    const auto views = add_pair(builder, {0, -0.2, 0}, {0, 0.6, 2.0});
+    add_all(builder, strew(generator, 220, {-0.6, 0.6, 1.5}, {0.9, 0, 0}, {0, 0, 0.8}, 0.004),
+            views, 0);
+    // Few points of the board are seen among the things on its right end.
+    for (const Vector3d& foot :
+         strew(generator, 70, {0.3, 0.6, 1.5}, {0.3, 0, 0}, {0, 0, 0.8}, 0.0)) {
+      builder.add_landmark(foot + height(generator) * kUp, views, 0);
+    }
+    Map map = builder.build();
+    PlaneMapper mapper = mono_mapper();
+    map_planes(map, {0, 1, 1}, mapper);
+    ASSERT_TRUE(map.planes.contains(0)) << trial;
+    // Least squares over all tilts the board by 2.4 degrees.
+    EXPECT_LT(angle_deg(map.planes.at(0).normal, kUp), 0.5) << trial;
+    EXPECT_NEAR(map.planes.at(0).signed_distance({-0.15, 0.6, 1.9}), 0.0, 0.003) << trial;
+  }
+}
+
+TEST(PlaneMapper, NothingIsMovedOntoASlab) {
+  auto generator = test_generator();
+  std::uniform_real_distribution<double> along(-0.03, 0.03);
+  Wall wall(generator);
+  Map map = wall.builder.build();
+  PlaneMapper mapper = mono_mapper();
+  map_planes(map, {0, 1}, mapper);
+  ASSERT_EQ(map.planes.size(), 1U);
+  for (Landmark& landmark : map.landmarks) landmark.position.z() = 2.0 + along(generator);
+  const PlaneContext context{PlaneMappingOptions(), mapper.scale(), test_camera(), false};
+  EXPECT_EQ(project_landmarks(map, 0, context).refined, 0);
+}
+
 TEST(PlaneMapper, ClutterIsNoPlane) {
   auto generator = test_generator();
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -252,17 +299,6 @@ TEST(PlaneMapper, TwoRunsAreIdentical) {
     EXPECT_EQ(landmark.plane, b.landmarks.at(landmark.id).plane);
   }
 }
-
-/// A wall of 100 landmarks with masks; more landmarks can be added before build().
-struct Wall {
-  MapBuilder builder{test_camera()};
-  std::vector<KeyframeId> views = add_pair(builder, {0, 0, 0}, {0, 0, 2});
-
-  explicit Wall(std::mt19937& generator) {
-    add_all(builder, strew(generator, 100, {-0.5, -0.5, 2.0}, {1, 0, 0}, {0, 1, 0}, 0.004), views,
-            1);
-  }
-};
 
 TEST(PlaneMapper, CullsOwnedLandmarksThatLeftTheirPlane) {
   auto generator = test_generator();
