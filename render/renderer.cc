@@ -16,20 +16,17 @@
 #include "render/passes/models.h"
 #include "render/passes/occluders.h"
 #include "render/passes/pass_clock.h"
+#include "render/passes/sun_shadow.h"
 #include "render/passes/surfaces.h"
 #include "render/passes/targets.h"
 #include "render/passes/view.h"
-#include "render/software/software_layer.h"
+#include "render/software/software_input.h"
+#include "render/software/software_painter.h"
 
 namespace planecast::render {
 namespace {
 
 constexpr float kSqrt4Pi = 3.5449077F;
-/// A shadow's plane was fitted to the same depths that occlude it, so it gets more leeway.
-constexpr float kCatcherTolerance = 2.5F;
-/// Pixels around the projected bounds: one for the resolve, one for rounding.
-constexpr int kBoundsMargin = 2;
-
 std::unique_ptr<GlContext> create_current_context(const RendererOptions& options) {
   // Read once by Mesa when it finds out about the processor; a setting from outside wins.
   if (options.portable_floats) setenv("GALLIUM_OVERRIDE_CPU_CAPS", "sse4.1", 0);
@@ -47,9 +44,10 @@ void check_camera(const Camera& camera) {
   }
 }
 
-int power_of_two(int size) { return static_cast<int>(std::bit_floor(static_cast<unsigned>(size))); }
-
-bool casts(const Sun& sun) { return sun.casts_shadow && sun.radiance != glm::vec3(0.0F); }
+int shadow_map_size(const RendererOptions& options) {
+  const int size = std::clamp(options.shadow_map_size, 64, 8192);
+  return static_cast<int>(std::bit_floor(static_cast<unsigned>(size)));
+}
 
 /// Whether the shadows are the same in every frame. Told by the scene, not by the last frame, so
 /// that a picture never depends on those drawn before it.
@@ -58,18 +56,6 @@ bool stands_still(const LayerScene& scene) {
     return instance.model == nullptr || instance.animation < 0 ||
            static_cast<std::size_t>(instance.animation) >= instance.model->animations.size();
   });
-}
-
-float shadow_margin_texels(const Sun& sun) { return 3.0F + 2.0F * sun.softness; }
-
-/// What the shadows of a frame depend on, except the planes they fall on.
-std::uint64_t caster_signature(const ModelSet& models, const Sun& sun) {
-  ContentHash hash;
-  hash.add(models.signature());
-  hash.add(sun.direction_to_light);
-  hash.add(sun.softness);
-  hash.add(casts(sun));
-  return hash.value();
 }
 
 }  // namespace
@@ -87,13 +73,14 @@ struct Renderer::Impl {
         context(create_current_context(given)),
         gl(load_functions(*context)),
         shaders(gl, given.shader_dir),
-        shadow_map(gl, power_of_two(std::clamp(given.shadow_map_size, 64, 8192))),
+        sun_shadow(gl, shadow_map_size(given), given.simplify_px),
         surfaces(gl),
         models(gl),
         model_passes(gl, shaders, models),
         catchers(gl, model_passes),
         occluders(gl),
-        environment(gl) {
+        environment(gl),
+        software(shadow_map_size(given), given.simplify_px) {
     gl.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     gl.Enable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
   }
@@ -110,14 +97,11 @@ struct Renderer::Impl {
   }
 
   Layer draw_layer(const LayerScene& scene, const Camera& camera);
-  void draw_by_opengl(const LayerScene& scene, const Camera& camera, const CatcherInput& catching,
-                      const Window& window, Layer& layer);
-  void draw_by_processor(const CatcherInput& catching, const Window& window, Layer& layer);
+  void draw_by_opengl(const LayerScene& scene, const Camera& camera, const PosedItems& posed,
+                      Layer& layer);
   void draw_layer_color(const LayerScene& scene, const Camera& camera, const CatcherInput& catching,
                         const ShadingInput& shading, const Window& window, Layer& layer);
   OpaqueImages draw_opaque(const OpaqueScene& scene, const Camera& camera);
-  void draw_shadow_map(const ShadowProjection& projection, const std::vector<DrawItem>& items,
-                       const Sun& sun, bool with_surfaces, std::uint64_t signature);
   GLuint upload_occluder_depth(const LayerScene& scene, const Window& window);
   void light_by(const Light& light, ShadingInput& shading);
   void begin_opaque_state() const;
@@ -127,16 +111,14 @@ struct Renderer::Impl {
   std::unique_ptr<GlContext> context;
   Gl gl;
   ShaderLibrary shaders;
-  ShadowMap shadow_map;
-  std::uint64_t shadow_signature = 0;
-  std::vector<float> shadow_in_memory;  ///< of the map as it is, or empty
+  SunShadow sun_shadow;
   SurfaceSet surfaces;
   ModelSet models;
   ModelPasses model_passes;
   CatcherPass catchers;
   OccluderPass occluders;
   EnvironmentMap environment;
-  SoftwareLayer software;
+  SoftwarePainter software;
   std::optional<ColorTarget> color;
   std::optional<GeometryTarget> geometry;
   TextureHandle occluder_depth;
@@ -162,25 +144,6 @@ void Renderer::Impl::begin_opaque_state() const {
 void Renderer::Impl::check_errors() const {
   const GLenum error = gl.GetError();
   if (error != GL_NO_ERROR) throw std::runtime_error("OpenGL error " + std::to_string(error));
-}
-
-void Renderer::Impl::draw_shadow_map(const ShadowProjection& projection,
-                                     const std::vector<DrawItem>& items, const Sun& sun,
-                                     bool with_surfaces, std::uint64_t signature) {
-  if (signature == shadow_signature) return;
-  shadow_signature = signature;
-  shadow_in_memory.clear();
-  shadow_map.begin(projection);
-  // Casters step back by their slope, so that they do not shade themselves between texels.
-  constexpr float kSlopeTexels = 1.5F;
-  gl.Enable(GL_POLYGON_OFFSET_FILL);
-  gl.PolygonOffset(kSlopeTexels, 0.0F);
-  if (with_surfaces) {
-    surfaces.draw_shadow(shaders, projection, glm::normalize(sun.direction_to_light));
-  }
-  model_passes.draw_depth(items, projection.clip_from_world,
-                          options.simplify_px * projection.texel_m);
-  gl.Disable(GL_POLYGON_OFFSET_FILL);
 }
 
 /// The window's part of the depth image, so that the shaders find it by their own pixel.
@@ -218,86 +181,37 @@ Layer Renderer::Impl::draw_layer(const LayerScene& scene, const Camera& camera) 
 
   clock.end_of("pose");
   const std::vector<glm::vec3> points = world_box_points(items);
-  const Sun& sun = scene.light.sun;
-  const std::uint64_t signature = caster_signature(models, sun);
-  const ShadowMap* shadow = nullptr;
-  if (casts(sun)) {
-    draw_shadow_map(
-        fit_shadow(sun.direction_to_light, points, shadow_map.size(), shadow_margin_texels(sun)),
-        items, sun, false, signature);
-    shadow = &shadow_map;
-  }
-  CatcherInput catching;
-  catching.scene = &scene;
-  catching.camera = &camera;
-  catching.items = &items;
-  catching.caster_points = &points;
-  catching.shadow = shadow;
-  catching.casters = signature;
-  catching.still = stands_still(scene);
-  catching.detail_texels = options.simplify_px;
-  catchers.prepare(shaders, catching);
-  clock.end_of("catcher maps");
-
-  Layer::Rect bounds;
-  for (std::size_t i = 0; i < points.size(); i += 8) {
-    const auto first = points.begin() + static_cast<std::ptrdiff_t>(i);
-    bounds = united(bounds, projected_bounds(camera, {first, first + 8}));
-  }
-  const std::vector<glm::vec3> dark = catchers.touched_points(catching);
-  for (std::size_t i = 0; i < dark.size(); i += 4) {
-    const auto first = dark.begin() + static_cast<std::ptrdiff_t>(i);
-    bounds = united(bounds, projected_bounds(camera, {first, first + 4}));
-  }
-  layer.bounds = grown(bounds, kBoundsMargin, camera);
-  if (layer.bounds.width == 0) return layer;
-
-  const Window window{camera.width, camera.height, layer.bounds};
-  const bool by_processor =
-      !options.only_opengl && options.msaa_samples > 1 &&
-      SoftwareLayer::can_draw(scene, camera, items, !models.lamps().empty(), catching.still);
-  if (by_processor) {
-    draw_by_processor(catching, window, layer);
-    layer.by_processor = true;
+  const PosedItems posed{&items, &points, caster_signature(models, scene.light.sun),
+                         stands_still(scene)};
+  if (!options.only_opengl && options.msaa_samples > 1 &&
+      drawable_by_processor(scene, camera, items, !models.lamps().empty())) {
+    software.draw(scene, camera, posed, clock, layer);
   } else {
-    draw_by_opengl(scene, camera, catching, window, layer);
+    draw_by_opengl(scene, camera, posed, layer);
   }
   check_errors();
   return layer;
 }
 
-void Renderer::Impl::draw_by_processor(const CatcherInput& catching, const Window& window,
-                                       Layer& layer) {
-  const LayerScene& scene = *catching.scene;
-  const Sun& sun = scene.light.sun;
-  SoftwareInput input;
-  input.scene = &scene;
-  input.camera = catching.camera;
-  input.items = catching.items;
-  input.shadows = &catchers.shadows_in_memory();
-  input.detail_px = options.simplify_px;
-  input.light.eye = camera_position(*catching.camera);
-  input.light.ambient_sh = scene.light.ambient_sh;
-  input.light.to_light = glm::normalize(sun.direction_to_light);
-  input.light.sun = sun.radiance;
-  input.light.exposure = scene.exposure;
-  if (catching.shadow != nullptr) {
-    if (shadow_in_memory.empty()) shadow_in_memory = shadow_map.read();
-    const ShadowProjection& projection = shadow_map.projection();
-    const float radius_m = sun.softness * projection.texel_m;
-    input.light.shadow_from_world = projection.clip_from_world;
-    input.light.shadow_reach_m = 1.5F * projection.texel_m + radius_m;
-    input.light.shadow_bias = 0.5F * projection.texel_m / projection.depth_m;
-    input.shadow = {shadow_in_memory.data(), shadow_map.size(),
-                    glm::vec2(0.9F, 0.35F) * (radius_m / projection.extent_m)};
-  }
-  software.draw(input, window, layer);
-  clock.end_of("objects by the processor");
-}
-
 void Renderer::Impl::draw_by_opengl(const LayerScene& scene, const Camera& camera,
-                                    const CatcherInput& catching, const Window& window,
-                                    Layer& layer) {
+                                    const PosedItems& posed, Layer& layer) {
+  CatcherInput catching;
+  catching.scene = &scene;
+  catching.camera = &camera;
+  catching.items = posed.items;
+  catching.caster_points = posed.points;
+  catching.shadow =
+      sun_shadow.update(scene.light.sun, {posed.items, posed.points, nullptr, posed.signature},
+                        model_passes, shaders);
+  catching.casters = posed.signature;
+  catching.still = posed.still;
+  catching.detail_texels = options.simplify_px;
+  catchers.prepare(shaders, catching);
+  clock.end_of("catcher maps");
+  layer.bounds = layer_bounds(camera, *posed.points, catchers.touched_points(catching));
+  if (layer.bounds.width == 0) return;
+
+  const Window window{camera.width, camera.height, layer.bounds};
   prepare_targets(window);
   ShadingInput shading;
   shading.camera = &camera;
@@ -343,18 +257,13 @@ OpaqueImages Renderer::Impl::draw_opaque(const OpaqueScene& scene, const Camera&
   surfaces.update(scene.surfaces);
   const std::vector<DrawItem>& items = models.pose(scene.instances);
   const Sun& sun = scene.light.sun;
-  const ShadowMap* shadow = nullptr;
-  if (casts(sun)) {
-    std::vector<glm::vec3> points = world_box_points(items);
-    points.insert(points.end(), surfaces.box_points().begin(), surfaces.box_points().end());
-    ContentHash signature;
-    signature.add(caster_signature(models, sun));
-    signature.add(surfaces.signature());
-    draw_shadow_map(
-        fit_shadow(sun.direction_to_light, points, shadow_map.size(), shadow_margin_texels(sun)),
-        items, sun, true, signature.value());
-    shadow = &shadow_map;
-  }
+  std::vector<glm::vec3> points = world_box_points(items);
+  points.insert(points.end(), surfaces.box_points().begin(), surfaces.box_points().end());
+  ContentHash signature;
+  signature.add(caster_signature(models, sun));
+  signature.add(surfaces.signature());
+  const ShadowMap* shadow = sun_shadow.update(sun, {&items, &points, &surfaces, signature.value()},
+                                              model_passes, shaders);
 
   ShadingInput shading;
   shading.camera = &camera;
@@ -406,7 +315,7 @@ void Renderer::forget() {
   impl_->catchers.clear();
   impl_->environment.clear();
   impl_->software.clear();
-  impl_->shadow_signature = 0;
+  impl_->sun_shadow.forget();
 }
 
 std::map<std::string, double> Renderer::pass_times_ms() { return impl_->clock.take(); }

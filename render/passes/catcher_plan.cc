@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "render/passes/content_hash.h"
+#include "render/passes/view.h"
+
 namespace planecast::render {
 namespace {
 
@@ -87,6 +90,14 @@ PlaneRegion sun_region(const std::vector<glm::vec3>& points, const PlaneFrame& f
   return region;
 }
 
+std::uint64_t patch_hash(const PlanePatch& patch) {
+  ContentHash hash;
+  hash.add(patch.normal);
+  hash.add(patch.outer);
+  for (const auto& hole : patch.holes) hash.add(hole);
+  return hash.value();
+}
+
 PlaneRegion united(const PlaneRegion& a, const PlaneRegion& b) {
   return {glm::min(a.min, b.min), glm::max(a.max, b.max)};
 }
@@ -134,6 +145,58 @@ std::optional<CatcherPlan> plan_catcher(const PlanePatch& patch,
   plan.region = intersection(outer, touched);
   if (plan.region.empty()) return std::nullopt;
   return plan;
+}
+
+std::vector<PlannedCatcher> plan_catchers(const LayerScene& scene, const Camera& camera,
+                                          const std::vector<glm::vec3>& caster_points,
+                                          bool sun_casts) {
+  std::vector<PlannedCatcher> planned;
+  const glm::vec3 eye = camera_position(camera);
+  for (std::size_t i = 0; i < scene.catchers.size(); ++i) {
+    const auto plan = plan_catcher(scene.catchers[i], caster_points, scene.light, sun_casts, eye);
+    if (!plan) continue;
+    if (projected_bounds(camera, plan->frame.corners(plan->region)).width == 0) continue;
+    planned.push_back({i, patch_hash(scene.catchers[i]), *plan});
+  }
+  return planned;
+}
+
+std::uint64_t map_signature(const PlannedCatcher& catcher, const LayerScene& scene,
+                            std::uint64_t casters) {
+  ContentHash signature;
+  signature.add(casters);
+  signature.add(catcher.hash);
+  signature.add(catcher.plan.sun);
+  signature.add(catcher.plan.contact_region.empty());
+  signature.add(scene.light.sun.angular_radius_rad);
+  signature.add(scene.catchers[catcher.patch].edge_softness_m);
+  return signature.value();
+}
+
+PlaneRegion dark_part(const ImageU8& baked, const PlaneRegion& region) {
+  constexpr std::uint8_t kVisible = 2;
+  const auto side = static_cast<std::size_t>(baked.width);
+  const glm::vec2 texel = region.size() / static_cast<float>(baked.width);
+  PlaneRegion dark = nothing();
+  for (std::size_t y = 0; y < side; ++y) {
+    for (std::size_t x = 0; x < side; ++x) {
+      const std::uint8_t* at = &baked.pixels[4 * (y * side + x)];
+      if (std::max(at[0], at[1]) < kVisible || at[2] == 0) continue;
+      const glm::vec2 corner(static_cast<float>(x), static_cast<float>(y));
+      dark.add(region.min + (corner - 1.0F) * texel);
+      dark.add(region.min + (corner + 2.0F) * texel);
+    }
+  }
+  return intersection(dark, region);
+}
+
+int penumbra_factor(int shadow_map_size) {
+  constexpr int kPenumbraSide = 512;
+  return std::max(1, shadow_map_size / kPenumbraSide);
+}
+
+float light_tangent(const Sun& sun) {
+  return std::tan(std::clamp(sun.angular_radius_rad, 0.0F, 0.5F));
 }
 
 }  // namespace planecast::render

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
 #include <vector>
@@ -28,5 +29,36 @@ std::optional<CatcherPlan> plan_catcher(const PlanePatch& patch,
                                         const std::vector<glm::vec3>& caster_points,
                                         const Light& light, bool sun_casts,
                                         const glm::vec3& camera_position);
+
+/// A patch of the scene that the camera sees getting darker.
+struct PlannedCatcher {
+  std::size_t patch = 0;   ///< number in the scene
+  std::uint64_t hash = 0;  ///< of the patch's shape
+  CatcherPlan plan;
+};
+std::vector<PlannedCatcher> plan_catchers(const LayerScene& scene, const Camera& camera,
+                                          const std::vector<glm::vec3>& caster_points,
+                                          bool sun_casts);
+
+/// What the maps of a catcher are made from. `casters` changes when they or the sun do.
+std::uint64_t map_signature(const PlannedCatcher& catcher, const LayerScene& scene,
+                            std::uint64_t casters);
+
+/// Texels along a side of a baked shadow: over a metre of table one is about a pixel.
+inline constexpr int kBakedSide = 768;
+
+/// Cells of the distance to a polygon's edge along its longer side.
+inline constexpr int kMaskSide = 160;
+
+/// Of a baked shadow over `region` (RGBA, as catcher.frag bakes) the part with shares that show
+/// after rounding.
+PlaneRegion dark_part(const ImageU8& baked, const PlaneRegion& region);
+
+/// Texels of a shadow map that one of the penumbra map is the mean of, along a side: penumbrae are
+/// wide.
+int penumbra_factor(int shadow_map_size);
+
+/// Tangent of the angle that the light is wide.
+float light_tangent(const Sun& sun);
 
 }  // namespace planecast::render

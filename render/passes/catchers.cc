@@ -13,12 +13,6 @@
 namespace planecast::render {
 namespace {
 
-constexpr int kMaskSide = 160;
-/// Penumbrae are wide: the shadow map is averaged down to this.
-constexpr int kPenumbraSide = 512;
-/// Texels of a baked shadow: over a metre of table one is about a pixel.
-constexpr int kBakedSide = 768;
-
 /// Maps the region to the whole target, whatever the height.
 glm::mat4 clip_from_world_over(const PlaneFrame& frame, const PlaneRegion& region) {
   const glm::vec2 scale = 2.0F / region.size();
@@ -32,14 +26,6 @@ glm::mat4 clip_from_world_over(const PlaneFrame& frame, const PlaneRegion& regio
   clip[3] = glm::vec4(-glm::dot(row_x, frame.origin) - center.x * scale.x,
                       -glm::dot(row_y, frame.origin) - center.y * scale.y, 0.5F, 1.0F);
   return clip;
-}
-
-std::uint64_t patch_hash(const PlanePatch& patch) {
-  ContentHash hash;
-  hash.add(patch.normal);
-  hash.add(patch.outer);
-  for (const auto& hole : patch.holes) hash.add(hole);
-  return hash.value();
 }
 
 void set_filter(const Gl& gl, const TextureHandle& texture, GLint min_filter) {
@@ -58,20 +44,6 @@ TextureHandle make_penumbra_texture(const Gl& gl, int side) {
   return texture;
 }
 
-MipTexture read_levels(const Gl& gl, GLuint texture, int side) {
-  gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
-  gl.PixelStorei(GL_PACK_ROW_LENGTH, 0);
-  std::vector<ImageU8> levels;
-  for (int level = 0; side >> level > 0; ++level) {
-    ImageU8& image = levels.emplace_back(side >> level, side >> level, 4);
-    gl.GetTextureImage(texture, level, GL_RGBA, GL_UNSIGNED_BYTE,
-                       static_cast<GLsizei>(image.pixels.size()), image.pixels.data());
-  }
-  MipTexture::Options options;
-  options.wrap_s = options.wrap_t = GL_CLAMP_TO_EDGE;
-  return {levels, options};
-}
-
 }  // namespace
 
 CatcherPass::CatcherPass(const Gl& gl, const ModelPasses& models)
@@ -80,28 +52,20 @@ CatcherPass::CatcherPass(const Gl& gl, const ModelPasses& models)
 void CatcherPass::prepare(ShaderLibrary& shaders, const CatcherInput& input) {
   prepared_.clear();
   for (auto& [hash, mask] : masks_) mask.used = false;
-  const glm::vec3 eye = camera_position(*input.camera);
-  for (std::size_t i = 0; i < input.scene->catchers.size(); ++i) {
-    const PlanePatch& patch = input.scene->catchers[i];
-    const auto plan =
-        plan_catcher(patch, *input.caster_points, input.scene->light, input.shadow != nullptr, eye);
-    if (!plan) continue;
-    if (projected_bounds(*input.camera, plan->frame.corners(plan->region)).width == 0) continue;
-    const std::uint64_t hash = patch_hash(patch);
-    Maps& maps = maps_[i];
+  for (const PlannedCatcher& planned :
+       plan_catchers(*input.scene, *input.camera, *input.caster_points, input.shadow != nullptr)) {
+    const PlanePatch& patch = input.scene->catchers[planned.patch];
+    const CatcherPlan& plan = planned.plan;
+    Maps& maps = maps_[planned.patch];
     ContentHash signature;
-    signature.add(input.casters);
-    signature.add(hash);
-    signature.add(plan->sun);
-    signature.add(plan->contact_region.empty());
+    signature.add(map_signature(planned, *input.scene, input.casters));
     signature.add(input.still);
-    signature.add(input.scene->light.sun.angular_radius_rad);
-    signature.add(patch.edge_softness_m);
-    Prepared prepared{*plan, &mask_of(patch, plan->frame, hash), &maps, patch.edge_softness_m};
+    Prepared prepared{plan, &mask_of(patch, plan.frame, planned.hash), &maps,
+                      patch.edge_softness_m};
     if (maps.signature != signature.value()) {
       maps.signature = signature.value();
-      if (plan->sun && input.shadow != nullptr) make_penumbra(shaders, input, plan->frame, maps);
-      if (!plan->contact_region.empty()) make_contact(shaders, input, *plan, maps);
+      if (plan.sun && input.shadow != nullptr) make_penumbra(shaders, input, plan.frame, maps);
+      if (!plan.contact_region.empty()) make_contact(shaders, input, plan, maps);
       if (input.still) bake(shaders, input, prepared, maps);
     }
     if (!prepared.drawn(input.still).empty()) prepared_.push_back(prepared);
@@ -137,7 +101,7 @@ void CatcherPass::begin_map(GLuint texture, int size) const {
 
 void CatcherPass::make_penumbra(ShaderLibrary& shaders, const CatcherInput& input,
                                 const PlaneFrame& frame, Maps& maps) {
-  const int factor = std::max(1, input.shadow->size() / kPenumbraSide);
+  const int factor = penumbra_factor(input.shadow->size());
   const int side = input.shadow->size() / factor;
   if (!maps.penumbra) maps.penumbra = make_penumbra_texture(*gl_, side);
   const ShadowProjection& projection = input.shadow->projection();
@@ -216,31 +180,12 @@ void CatcherPass::bake(ShaderLibrary& shaders, const CatcherInput& input, const 
   set_shadow_inputs(program, input, prepared);
   gl_->BindVertexArray(no_vertices_.id());
   gl_->DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-  maps.dark = dark_part(prepared.plan.region);
-  maps.baked_in_memory.reset();
-  gl_->GenerateTextureMipmap(maps.baked.id());
-}
-
-/// Reads the map that was just drawn: rows and columns with a share that shows after rounding.
-PlaneRegion CatcherPass::dark_part(const PlaneRegion& region) const {
-  constexpr std::uint8_t kVisible = 2;
-  const auto side = static_cast<std::size_t>(kBakedSide);
-  std::vector<std::uint8_t> texels(4 * side * side);
+  ImageU8 baked(kBakedSide, kBakedSide, 4);
   gl_->PixelStorei(GL_PACK_ALIGNMENT, 1);
   gl_->PixelStorei(GL_PACK_ROW_LENGTH, 0);
-  gl_->ReadPixels(0, 0, kBakedSide, kBakedSide, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
-  const glm::vec2 texel = region.size() / static_cast<float>(kBakedSide);
-  PlaneRegion dark = nothing();
-  for (std::size_t y = 0; y < side; ++y) {
-    for (std::size_t x = 0; x < side; ++x) {
-      const std::uint8_t* at = &texels[4 * (y * side + x)];
-      if (std::max(at[0], at[1]) < kVisible || at[2] == 0) continue;
-      const glm::vec2 corner(static_cast<float>(x), static_cast<float>(y));
-      dark.add(region.min + (corner - 1.0F) * texel);
-      dark.add(region.min + (corner + 2.0F) * texel);
-    }
-  }
-  return intersection(dark, region);
+  gl_->ReadPixels(0, 0, kBakedSide, kBakedSide, GL_RGBA, GL_UNSIGNED_BYTE, baked.pixels.data());
+  maps.dark = dark_part(baked, prepared.plan.region);
+  gl_->GenerateTextureMipmap(maps.baked.id());
 }
 
 std::vector<glm::vec3> CatcherPass::touched_points(const CatcherInput& input) const {
@@ -250,18 +195,6 @@ std::vector<glm::vec3> CatcherPass::touched_points(const CatcherInput& input) co
     points.insert(points.end(), corners.begin(), corners.end());
   }
   return points;
-}
-
-const std::vector<ShadowOnPlane>& CatcherPass::shadows_in_memory() {
-  shadows_in_memory_.clear();
-  for (const Prepared& prepared : prepared_) {
-    Maps& maps = *prepared.maps;
-    if (!maps.baked_in_memory)
-      maps.baked_in_memory = read_levels(*gl_, maps.baked.id(), kBakedSide);
-    shadows_in_memory_.push_back({prepared.plan.frame, maps.dark, prepared.plan.region,
-                                  &*maps.baked_in_memory, prepared.plan.sun_share});
-  }
-  return shadows_in_memory_;
 }
 
 void CatcherPass::set_plane(const Program& program, const PlaneFrame& frame,
@@ -290,13 +223,13 @@ void CatcherPass::set_shadow_inputs(const Program& program, const CatcherInput& 
   if (prepared.plan.sun) {
     const Sun& sun = input.scene->light.sun;
     const ShadowProjection& projection = input.shadow->projection();
-    const int factor = std::max(1, input.shadow->size() / kPenumbraSide);
+    const int factor = penumbra_factor(input.shadow->size());
     gl_->BindTextureUnit(kUnitHeights, prepared.maps->penumbra.id());
     program.set("u_penumbra", static_cast<int>(kUnitHeights));
     program.set("u_shadow_from_world", projection.clip_from_world);
     program.set("u_penumbra_texel_m", projection.texel_m * static_cast<float>(factor));
     program.set("u_penumbra_extent_m", projection.extent_m);
-    program.set("u_light_tangent", std::tan(std::clamp(sun.angular_radius_rad, 0.0F, 0.5F)));
+    program.set("u_light_tangent", light_tangent(sun));
     program.set("u_farthest_gap_m", prepared.plan.farthest_gap_m);
     program.set("u_smallest_radius_m", sun.softness * projection.texel_m);
   }

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <vector>
 
 #include "render/gl/objects.h"
@@ -11,7 +10,6 @@
 #include "render/passes/model_passes.h"
 #include "render/passes/shadow_map.h"
 #include "render/scene.h"
-#include "render/software/baked_shadow.h"
 
 namespace planecast::render {
 
@@ -41,8 +39,6 @@ class CatcherPass {
   /// Blends black over the bound target; reads its depth, leaves it.
   void draw(ShaderLibrary& shaders, const CatcherInput& input, GLuint occluder_depth,
             float occluder_tolerance) const;
-  /// What draw() would draw, in memory. For catchers of a scene that stands still.
-  const std::vector<ShadowOnPlane>& shadows_in_memory();
   void clear();
 
  private:
@@ -59,7 +55,6 @@ class CatcherPass {
     int contact_side = 0;
     TextureHandle baked;  ///< what catcher.frag finds over the plan's region
     PlaneRegion dark;     ///< the part of it that is not quite bright
-    std::optional<MipTexture> baked_in_memory;
   };
   struct Prepared {
     CatcherPlan plan;
@@ -77,7 +72,6 @@ class CatcherPass {
                     Maps& maps);
   void bake(ShaderLibrary& shaders, const CatcherInput& input, const Prepared& prepared,
             Maps& maps);
-  PlaneRegion dark_part(const PlaneRegion& region) const;
   void set_shadow_inputs(const Program& program, const CatcherInput& input,
                          const Prepared& prepared) const;
   void set_plane(const Program& program, const PlaneFrame& frame, const PlaneRegion& region) const;
@@ -93,7 +87,6 @@ class CatcherPass {
   std::map<std::uint64_t, Mask> masks_;
   std::map<std::size_t, Maps> maps_;  ///< by the patch's place in the scene
   std::vector<Prepared> prepared_;
-  std::vector<ShadowOnPlane> shadows_in_memory_;
 };
 
 }  // namespace planecast::render

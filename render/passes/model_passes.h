@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "render/passes/models.h"
+#include "render/passes/occluders.h"
 #include "render/passes/shadow_map.h"
 #include "render/scene.h"
 
@@ -14,7 +15,7 @@ struct ShadingInput {
   const Light* light = nullptr;
   const ShadowMap* shadow = nullptr;  ///< null: nothing is in shadow
   GLuint occluder_depth = 0;          ///< texture of the camera's size, 0: none
-  float occluder_tolerance = 0.02F;
+  float occluder_tolerance = kOccluderTolerance;
   float exposure = 1.0F;
   ToneMap tone_map = ToneMap::kNone;
   GLuint environment = 0;  ///< cube texture, 0: reflections come from the harmonics

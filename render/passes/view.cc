@@ -21,6 +21,18 @@ struct Extent {
   }
 };
 
+/// Points in groups of `corners`, each the corners of something convex.
+Layer::Rect bounds_of_groups(const Camera& camera, const std::vector<glm::vec3>& points,
+                             std::size_t corners) {
+  Layer::Rect bounds;
+  for (std::size_t i = 0; i < points.size(); i += corners) {
+    const auto first = points.begin() + static_cast<std::ptrdiff_t>(i);
+    bounds = united(
+        bounds, projected_bounds(camera, {first, first + static_cast<std::ptrdiff_t>(corners)}));
+  }
+  return bounds;
+}
+
 }  // namespace
 
 glm::mat4 clip_from_camera(const Camera& camera) {
@@ -104,6 +116,15 @@ Layer::Rect grown(const Layer::Rect& rect, int pixels, const Camera& camera) {
   const int x1 = std::min(camera.width, rect.x + rect.width + pixels);
   const int y1 = std::min(camera.height, rect.y + rect.height + pixels);
   return {x0, y0, x1 - x0, y1 - y0};
+}
+
+Layer::Rect layer_bounds(const Camera& camera, const std::vector<glm::vec3>& box_points,
+                         const std::vector<glm::vec3>& shadow_points) {
+  // One pixel for the resolve, one for rounding.
+  constexpr int kMargin = 2;
+  return grown(
+      united(bounds_of_groups(camera, box_points, 8), bounds_of_groups(camera, shadow_points, 4)),
+      kMargin, camera);
 }
 
 }  // namespace planecast::render

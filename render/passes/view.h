@@ -33,4 +33,9 @@ Layer::Rect united(const Layer::Rect& a, const Layer::Rect& b);
 /// Width and height grow by `pixels` on each side, cut to the picture.
 Layer::Rect grown(const Layer::Rect& rect, int pixels, const Camera& camera);
 
+/// What a layer of objects with these box corners (eight each) and shadows on planes with these
+/// corners (four each) may touch.
+Layer::Rect layer_bounds(const Camera& camera, const std::vector<glm::vec3>& box_points,
+                         const std::vector<glm::vec3>& shadow_points);
+
 }  // namespace planecast::render

@@ -7,7 +7,7 @@
 namespace planecast::render {
 namespace {
 
-constexpr float kSubpixel = 1.0F / 256.0F;
+constexpr float kPixelsPerStep = 1.0F / 256.0F;
 
 /// Encoding by the square root of the linear value, which is nearly as even as sRGB itself.
 class EncodeTable {
@@ -51,8 +51,8 @@ struct Weights {
 
 FragmentShader::FragmentShader(const std::vector<ObjectSurface>& surfaces,
                                const std::vector<ObjectTriangle>& triangles,
-                               const LightUniforms& light, const ShadowTexels& shadow)
-    : surfaces_(&surfaces), triangles_(&triangles), light_(&light), shadow_(shadow) {}
+                               const ShadingUniforms& uniforms)
+    : surfaces_(&surfaces), triangles_(&triangles), uniforms_(&uniforms) {}
 
 /// What a batch shares, such as textures, is then looked up once.
 void FragmentShader::order_by_surface(std::vector<Fragment>& fragments) {
@@ -89,18 +89,19 @@ void FragmentShader::shade(const Batch& batch) {
   interpolate(batch);
   read_albedo(batch);
   if (batch.surface->unlit) {
-    show_albedo(lanes_, light_->exposure);
+    show_albedo(lanes_, uniforms_->light.exposure);
   } else {
     read_maps(batch);
-    orient(lanes_, *light_);
-    if (shadow_.depth != nullptr) {
-      find_sun(lanes_, shadow_);
+    orient(lanes_, uniforms_->light);
+    if (uniforms_->shadow.depth != nullptr) {
+      find_sun(lanes_, uniforms_->shadow);
     } else {
       lanes_.arrives.fill(1.0F);
     }
-    light(lanes_, *light_);
+    light(lanes_, uniforms_->light);
   }
   finish(batch);
+  if (uniforms_->occlusion.depth != nullptr) hide(batch);
 }
 
 void FragmentShader::place(const Batch& batch) {
@@ -112,8 +113,8 @@ void FragmentShader::place(const Batch& batch) {
     const int v = 256 * fragment.y + 128;
     for (std::size_t k = 0; k < 3; ++k) {
       const ScreenVertex& corner = screen[triangle.corners[k]];
-      place_.u[k][i] = static_cast<float>(corner.x - u) * kSubpixel;
-      place_.v[k][i] = static_cast<float>(corner.y - v) * kSubpixel;
+      place_.u[k][i] = static_cast<float>(corner.x - u) * kPixelsPerStep;
+      place_.v[k][i] = static_cast<float>(corner.y - v) * kPixelsPerStep;
       place_.inverse_w[k][i] = corner.inverse_w;
     }
   }
@@ -231,6 +232,29 @@ void FragmentShader::finish(const Batch& batch) {
   for (std::size_t i = 0; i < batch.count; ++i) {
     const glm::vec3 root = lanes_.color_root.get(i);
     batch.fragments[i]->color = {kEncoded(root.x), kEncoded(root.y), kEncoded(root.z)};
+  }
+}
+
+/// What lies behind the depth image fades.
+void FragmentShader::hide(const Batch& batch) {
+  LaneInt x{};
+  LaneInt y{};
+  Lane depth{};
+  const glm::vec4& view = uniforms_->view_depth;
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    x[i] = batch.fragments[i]->x + uniforms_->corner.x;
+    y[i] = batch.fragments[i]->y + uniforms_->corner.y;
+    depth[i] = glm::dot(glm::vec3(view), lanes_.position.get(i)) + view.w;
+  }
+  Lane visible;
+  find_visibility(uniforms_->occlusion, x, y, depth, visible);
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    Fragment& fragment = *batch.fragments[i];
+    const auto share = [&](std::uint8_t value) {
+      return static_cast<std::uint8_t>(visible[i] * static_cast<float>(value) + 0.5F);
+    };
+    fragment.alpha = share(255);
+    for (std::uint8_t& channel : fragment.color) channel = share(channel);
   }
 }
 

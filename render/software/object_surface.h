@@ -63,7 +63,8 @@ struct Fragment {
   std::uint16_t y = 0;
   std::int32_t triangle = 0;  ///< index
   std::uint8_t samples = 0;
-  std::array<std::uint8_t, 3> color{};  ///< shaded, sRGB
+  std::array<std::uint8_t, 3> color{};  ///< shaded, sRGB, premultiplied
+  std::uint8_t alpha = 255;             ///< what a depth image leaves of it
 };
 
 }  // namespace planecast::render

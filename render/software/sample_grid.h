@@ -7,21 +7,10 @@
 #include <vector>
 
 #include "render/scene.h"
+#include "render/software/coverage.h"
 #include "render/software/lanes.h"
 
 namespace planecast::render {
-
-/// A vertex on the screen: pixels in 1/256, relative to the window's corner, the centre of the
-/// first pixel being (128, 128).
-struct ScreenVertex {
-  std::int32_t x = 0;
-  std::int32_t y = 0;
-  float depth = 0.0F;      ///< reversed: 1 near, 0 far
-  float inverse_w = 0.0F;  ///< 1 / depth along the optical axis
-};
-
-/// Snaps pixels relative to the window's corner (pixel centres at integers).
-ScreenVertex snapped(float u, float v, float depth, float inverse_w);
 
 /// Depth on the screen: at.x * u + at.y * v + at.z for pixel (u, v) of the window.
 using DepthPlane = glm::vec3;
@@ -37,10 +26,7 @@ class SampleGrid {
     F4 depth;
     I4 triangle;
   };
-  /// Blocks touched by a polygon: columns and rows, the upper ones excluded.
-  struct Area {
-    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-  };
+  using Area = BlockArea;  ///< touched by a polygon
 
   explicit SampleGrid(Pattern pattern);
 
@@ -69,14 +55,10 @@ class SampleGrid {
            static_cast<std::size_t>(x);
   }
   F4 plane_depth(int x, int y, const DepthPlane& plane) const;
-  template <typename Lanes, typename Visit>
-  void cover(const std::array<ScreenVertex, 3>& v, const Area& area, const Visit& visit) const;
   template <typename Visit>
-  void cover_any(std::array<ScreenVertex, 3> v, const Visit& visit) const;
+  void cover(const std::array<ScreenVertex, 3>& v, const Visit& visit) const;
 
-  int block_width_;  ///< pixels
-  I4 lane_x_;        ///< of each sample from the block's first pixel's corner, 1/256 pixel
-  I4 lane_y_;
+  SamplePattern pattern_;
   int columns_ = 0;
   int rows_ = 0;
   std::vector<Block> blocks_;

@@ -1,183 +1,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
-#include <limits>
-#include <random>
-#include <utility>
 
 #include "render/renderer.h"
-#include "render/software/mip_texture.h"
-#include "render/software/sample_grid.h"
 #include "render_test_tools.h"
 
 namespace planecast::render {
 namespace {
-
-constexpr int kSide = 48;
-
-int covered_samples(const SampleGrid& grid, std::int32_t number) {
-  int count = 0;
-  for (int y = 0; y < grid.rows(); ++y) {
-    for (int x = 0; x < grid.columns(); ++x) {
-      for (int s = 0; s < 4; ++s) count += grid.block(x, y).triangle[s] == number ? 1 : 0;
-    }
-  }
-  return count;
-}
-
-/// Neighbours leave no gap and share no sample: a fan of slim triangles fills its square exactly.
-/// In the larger square triangles are wide enough for the path that looks at many blocks together.
-TEST(SampleGrid, TrianglesOfOneSurfaceCoverEachSampleOnce) {
-  std::mt19937 random(7);
-  for (const auto& [pattern, side] : {std::pair{SampleGrid::Pattern::kFourSamples, 48},
-                                      {SampleGrid::Pattern::kPixelCentres, 48},
-                                      {SampleGrid::Pattern::kFourSamples, 200},
-                                      {SampleGrid::Pattern::kPixelCentres, 400}}) {
-    const float end = static_cast<float>(side) - 0.5F;
-    std::uniform_real_distribution<float> somewhere(0.2F * end, 0.8F * end);
-    for (int round = 0; round < 20; ++round) {
-      const glm::vec2 middle(somewhere(random), somewhere(random));
-      const int slices = round % 2 == 0 ? 3 : 12;
-      std::vector<glm::vec2> rim;
-      for (int i = 0; i < 4 * slices; ++i) {
-        const float t = static_cast<float>(i % slices) / static_cast<float>(slices);
-        const std::array<glm::vec2, 5> corners = {
-            glm::vec2(-0.5F), {end, -0.5F}, glm::vec2(end), {-0.5F, end}, glm::vec2(-0.5F)};
-        const auto edge = static_cast<std::size_t>(i / slices);
-        rim.push_back(glm::mix(corners[edge], corners[edge + 1], t));
-      }
-      int total = 0;
-      SampleGrid grid(pattern);
-      for (std::size_t i = 0; i < rim.size(); ++i) {
-        const auto at = [](glm::vec2 p) { return snapped(p.x, p.y, 0.5F, 1.0F); };
-        grid.begin(side, side);
-        grid.draw(at(middle), at(rim[i]), at(rim[(i + 1) % rim.size()]), 1);
-        total += covered_samples(grid, 1);
-      }
-      EXPECT_EQ(total, grid.columns() * grid.rows() * 4);
-    }
-  }
-}
-
-TEST(SampleGrid, TheNearestTriangleWinsWhateverTheOrder) {
-  const auto corner = [](float u, float v, float depth) { return snapped(u, v, depth, 1.0F); };
-  for (const bool near_first : {false, true}) {
-    SampleGrid grid(SampleGrid::Pattern::kFourSamples);
-    grid.begin(kSide, kSide);
-    const auto near = [&] {
-      grid.draw(corner(0, 0, 0.9F), corner(40, 0, 0.9F), corner(0, 40, 0.9F), 1);
-    };
-    const auto far = [&] {
-      grid.draw(corner(0, 0, 0.2F), corner(0, 40, 0.2F), corner(40, 0, 0.2F), 2);
-    };
-    if (near_first) near();
-    far();
-    if (!near_first) near();
-    EXPECT_EQ(covered_samples(grid, 2), 0);
-    EXPECT_NEAR(covered_samples(grid, 1), 4 * 800, 30);
-  }
-}
-
-TEST(SampleGrid, DepthIsExactAtTheSamples) {
-  SampleGrid grid(SampleGrid::Pattern::kPixelCentres);
-  grid.begin(kSide, kSide);
-  const auto corner = [](float u, float v) {
-    return snapped(u, v, 0.1F + 0.01F * u + 0.002F * v, 1.0F);
-  };
-  grid.draw(corner(2, 3), corner(45, 5), corner(7, 44), 1);
-  EXPECT_NEAR(grid.block(2, 20).depth[3], 0.1F + 0.11F + 0.04F, 1e-6F);
-}
-
-/// A concave outline with a hole, wound either way.
-TEST(SampleGrid, MarksAreEvenOdd) {
-  std::vector<glm::vec2> outer = {{4, 4}, {40, 4}, {40, 40}, {22, 20}, {4, 40}};
-  const std::vector<glm::vec2> hole = {{10, 8}, {16, 8}, {16, 14}, {10, 14}};
-  for (int winding = 0; winding < 2; ++winding) {
-    SampleGrid grid(SampleGrid::Pattern::kFourSamples);
-    grid.begin(kSide, kSide);
-    grid.mark({outer, hole});
-    const DepthPlane near(0.0F, 0.0F, 0.5F);
-    EXPECT_EQ(grid.take_marks(13, 11, near), 0U) << "in the hole";
-    EXPECT_EQ(grid.take_marks(22, 35, near), 0U) << "in the notch";
-    EXPECT_EQ(grid.take_marks(22, 10, near), 15U);
-    EXPECT_EQ(grid.take_marks(22, 10, near), 0U) << "taken before";
-    EXPECT_EQ(grid.take_marks(30, 10, DepthPlane(0.0F, 0.0F, -0.5F)), 0U) << "behind everything";
-    std::ranges::reverse(outer);
-  }
-}
-
-ImageU8 two_by_two() {
-  ImageU8 image(2, 2, 1);
-  image.pixels = {0, 200, 100, 40};
-  return image;
-}
-
-TEST(MipTexture, BlendsAndWrapsAsOpenGlDoes) {
-  MipTexture::Options options;
-  const MipTexture repeated(two_by_two(), options);
-  EXPECT_NEAR(repeated.sample({0.5F, 0.25F}, 0.0F)[0], 100.0F / 255.0F, 1e-5F);
-  EXPECT_NEAR(repeated.sample({0.0F, 0.25F}, 0.0F)[0], 100.0F / 255.0F, 1e-5F) << "round the edge";
-  EXPECT_NEAR(repeated.sample({-3.75F, 7.25F}, 0.0F)[0], 0.0F, 1e-5F);
-  EXPECT_NEAR(repeated.sample({0.1F, 0.9F}, 1.0F)[0], 85.0F / 255.0F, 1e-5F) << "the mean of all";
-  EXPECT_NEAR(repeated.sample({0.25F, 0.25F}, 0.5F)[0], 42.5F / 255.0F, 1e-5F) << "between levels";
-  options.wrap_s = GL_CLAMP_TO_EDGE;
-  options.wrap_t = GL_MIRRORED_REPEAT;
-  const MipTexture clamped(two_by_two(), options);
-  EXPECT_NEAR(clamped.sample({9.0F, 0.25F}, 0.0F)[0], 200.0F / 255.0F, 1e-5F);
-  EXPECT_NEAR(clamped.sample({0.25F, -0.75F}, 0.0F)[0], 100.0F / 255.0F, 1e-5F);
-  options.mag_filter = GL_NEAREST;
-  const MipTexture nearest(two_by_two(), options);
-  EXPECT_NEAR(nearest.sample({0.4F, 0.4F}, 0.0F)[0], 0.0F, 1e-6F);
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_GE(repeated.sample({nan, 1e30F}, nan)[0], 0.0F) << "reads somewhere inside";
-}
-
-TEST(MipTexture, ColoursAreBlendedAsLight) {
-  ImageU8 image(2, 1, 3);
-  image.pixels = {0, 0, 0, 255, 255, 255};
-  MipTexture::Options options;
-  options.colors = options.decode = true;
-  EXPECT_NEAR(MipTexture(image, options).sample({0.5F, 0.5F}, 0.0F)[0], 0.5F, 1e-5F);
-  options.decode = false;
-  EXPECT_NEAR(MipTexture(image, options).sample({0.5F, 0.5F}, 1.0F)[0], 188.0F / 255.0F, 1e-5F);
-}
-
-/// Every size, wrap and place at the borders, also where the coordinate is no ordinary number: the
-/// sanitizers watch.
-TEST(MipTexture, ReadsNothingBesideItsTexels) {
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  const float infinite = std::numeric_limits<float>::infinity();
-  const std::vector<float> places = {0.0F,   1.0F,   -1.0F,    0.999999F, 1.0F - 1e-8F,
-                                     -1e-9F, 7.5F,   infinite, nan,       -infinite,
-                                     1e30F,  -1e30F, 0.5F};
-  for (const auto& [width, height] : {std::pair{1, 1}, {1, 5}, {3, 2}, {8, 8}, {5, 1}}) {
-    ImageU8 image(width, height, 3);
-    std::ranges::fill(image.pixels, std::uint8_t{51});
-    for (const GLint wrap : {GL_REPEAT, GL_MIRRORED_REPEAT, GL_CLAMP_TO_EDGE}) {
-      for (const GLint filter : {GL_NEAREST, GL_LINEAR, GL_LINEAR_MIPMAP_LINEAR}) {
-        MipTexture::Options options;
-        options.wrap_s = options.wrap_t = wrap;
-        options.min_filter = filter;
-        options.mag_filter = filter == GL_NEAREST ? GL_NEAREST : GL_LINEAR;
-        const MipTexture texture(image, options);
-        for (const float u : places) {
-          for (const float v : places) {
-            for (const float level : {-1.0F, 0.3F, 2.0F, 40.0F, infinite, nan}) {
-              EXPECT_NEAR(texture.sample({u, v}, level).g, 0.2F, 1e-6F);
-            }
-          }
-        }
-      }
-    }
-  }
-}
-
-TEST(MipTexture, LogarithmIsClose) {
-  for (float x = 1e-3F; x < 1e4F; x *= 1.07F) EXPECT_NEAR(fast_log2(x), std::log2(x), 5e-5F);
-}
 
 enum class Paint { kColors, kNormals, kNumbers };
 
@@ -216,7 +47,46 @@ struct Variant {
   bool vertex_colors = false;
   bool mirrored = false;
   bool occluded = false;
+  bool animated = false;  ///< the object swings, and its mesh swells
+  bool seen_by_depth = false;
 };
+
+/// The ball turns about its node, leans and swells at its equator.
+void animate(Model& model) {
+  Primitive& ball = model.meshes[0].primitives[0];
+  MorphTarget swollen;
+  for (const ShapeVertex& vertex : ball.shape) {
+    const glm::vec3 n = glm::normalize(vertex.position);
+    swollen.positions.push_back(0.3F * (1.0F - n.y * n.y) * vertex.position);
+    swollen.normals.emplace_back(0.0F);
+  }
+  ball.targets = {swollen};
+  Animation swing;
+  swing.duration_s = 1.0F;
+  const float half = std::sqrt(0.5F);
+  swing.channels = {{0,
+                     ChannelPath::kRotation,
+                     Interpolation::kLinear,
+                     {0.0F, 1.0F},
+                     {0, 0, 0, 1, half, 0, 0, half},
+                     4},
+                    {0, ChannelPath::kWeights, Interpolation::kLinear, {0.0F, 1.0F}, {0, 1}, 1}};
+  model.animations = {swing};
+}
+
+/// A depth image of the camera: a slanting wall in front of the right half, its edge softened, a
+/// part of the object's own depth, and nothing known in the upper rows.
+ImageF room_depth(int width, int height) {
+  ImageF depth(width, height, 1);
+  for (int v = height / 3; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      const float wall = 0.6F + 0.0025F * static_cast<float>(v - height / 2);
+      const float away = 3.0F;
+      depth.pixels[static_cast<std::size_t>(v * width + u)] = u > width / 2 ? wall : away;
+    }
+  }
+  return depth;
+}
 
 LayerScene scene_of(const Variant& variant) {
   Material material;
@@ -261,6 +131,13 @@ LayerScene scene_of(const Variant& variant) {
   }
   LayerScene scene;
   Instance instance;
+  if (variant.animated) {
+    auto changed = std::make_shared<Model>(*model);
+    animate(*changed);
+    model = changed;
+    instance.animation = 0;
+    instance.animation_time_s = 0.4F;
+  }
   instance.model = model;
   // World: y down, as in the renderer's camera; the floor is y = 0.
   instance.world_from_model = glm::translate(glm::mat4(1.0F), glm::vec3(0, -0.16F, 0));
@@ -359,19 +236,20 @@ class TwoPaths : public ::testing::TestWithParam<Variant> {};
 /// Two implementations of one picture: the same within two levels, but where an edge crosses the
 /// pixel, whose samples may round to either side.
 TEST_P(TwoPaths, TheProcessorDrawsWhatOpenGlDraws) {
-  const LayerScene scene = scene_of(GetParam());
+  LayerScene scene = scene_of(GetParam());
   const Camera camera = slanting_camera();
+  const ImageF depth = room_depth(camera.width, camera.height);
+  if (GetParam().seen_by_depth) scene.occluder_depth = &depth;
   RendererOptions options = test::renderer_options();
-  options.time_passes = true;
   Renderer quick(options);
   const Layer a = quick.draw_layer(scene, camera);
-  EXPECT_TRUE(quick.pass_times_ms().contains("objects by the processor"));
+  EXPECT_TRUE(a.by_processor);
   options.only_opengl = true;
   Renderer reference(options);
   const Layer b = reference.draw_layer(scene, camera);
-  EXPECT_FALSE(reference.pass_times_ms().contains("objects by the processor"));
+  EXPECT_FALSE(b.by_processor);
   const Difference difference = difference_of(a, b);
-  EXPECT_GT(difference.interior, 5000);
+  EXPECT_GT(difference.interior, GetParam().seen_by_depth ? 2500 : 5000);
   EXPECT_LE(difference.interior_beyond, difference.interior / 1000);
   EXPECT_LE(difference.largest, 8)
       << "in pixel (" << difference.where.x << ", " << difference.where.y << ")";
@@ -386,16 +264,20 @@ INSTANTIATE_TEST_SUITE_P(
                       Variant{"unlit", 512, false, true},
                       Variant{"vertex_colors", 0, false, false, true},
                       Variant{"mirrored", 512, false, false, false, true},
-                      Variant{"occluded", 0, false, false, false, false, true}),
+                      Variant{"occluded", 0, false, false, false, false, true},
+                      Variant{.name = "animated", .texture_side = 512, .animated = true},
+                      Variant{.name = "animated_behind_planes", .occluded = true, .animated = true},
+                      Variant{.name = "seen_by_depth", .texture_side = 512, .seen_by_depth = true},
+                      Variant{.name = "animated_seen_by_depth",
+                              .occluded = true,
+                              .animated = true,
+                              .seen_by_depth = true}),
     [](const auto& given) { return given.param.name; });
 
 TEST(Software, WhatItDoesNotKnowGoesThroughOpenGl) {
-  RendererOptions options = test::renderer_options();
-  options.time_passes = true;
-  Renderer renderer(options);
+  Renderer renderer(test::renderer_options());
   const auto by_processor = [&](const LayerScene& scene, const Camera& camera) {
-    renderer.draw_layer(scene, camera);
-    return renderer.pass_times_ms().contains("objects by the processor");
+    return renderer.draw_layer(scene, camera).by_processor;
   };
   const Camera camera = slanting_camera();
   EXPECT_TRUE(by_processor(scene_of({"plain"}), camera));

@@ -1,4 +1,4 @@
-#include "render/software/baked_shadow.h"
+#include "render/software/plane_shadow.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,12 @@
 namespace planecast::render {
 
 // Compiled for several instruction sets: names that others see.
-void project_row(const ShadowProjector& projector, float u, float v, TextureReads& reads);
+void project_row(const ShadowProjector& projector, float u, float v, TextureReads& reads,
+                 Lane& depth);
 void alphas_of(const TextureReads& reads, float sun_share, float strength, LaneInt& alphas);
 
-PLANECAST_WIDE void project_row(const ShadowProjector& p, float u, float v, TextureReads& reads) {
+PLANECAST_WIDE void project_row(const ShadowProjector& p, float u, float v, TextureReads& reads,
+                                Lane& depth) {
   // Along a row: value = slope * column + start.
   const float x_slope = p.row_x.x;
   const float y_slope = p.row_y.x;
@@ -32,10 +34,12 @@ PLANECAST_WIDE void project_row(const ShadowProjector& p, float u, float v, Text
   Lane at_u;
   Lane at_v;
   Lane level;
+  Lane distance;
   for (std::size_t i = 0; i < kLanes; ++i) {
     const auto column = static_cast<float>(static_cast<std::int32_t>(i));
     const float inverse = 1.0F / (n_slope * column + n_start);
     const float t = height * inverse;
+    distance[i] = t;
     const float x = x_slope * column + x_start;
     const float y = y_slope * column + y_start;
     // Change of the texel by a pixel to the right and down.
@@ -58,6 +62,7 @@ PLANECAST_WIDE void project_row(const ShadowProjector& p, float u, float v, Text
   std::ranges::copy(at_v, reads.v.begin());
   std::ranges::copy(level, reads.level.begin());
   reads.count = kLanes;
+  depth = distance;  // rays are one long along the optical axis
 }
 
 /// Alpha that darkens an encoded picture as much as the light that is left says: multiplying light
@@ -72,8 +77,9 @@ PLANECAST_WIDE void alphas_of(const TextureReads& reads, float sun_share, float 
   }
 }
 
-BakedShadow::BakedShadow(const ShadowOnPlane& shadow, const Camera& camera, float strength)
-    : shadow_(&shadow), strength_(std::clamp(strength, 0.0F, 1.0F)) {
+PlaneShadow::PlaneShadow(const ShadowOnPlane& shadow, const Camera& camera, float strength,
+                         const DepthOcclusion& occlusion)
+    : shadow_(&shadow), strength_(std::clamp(strength, 0.0F, 1.0F)), occlusion_(occlusion) {
   const PlaneFrame& frame = shadow.frame;
   const glm::vec3 eye = camera_position(camera);
   // Directions of the world per pixel: a ray is columns * (u, v, 1).
@@ -82,19 +88,43 @@ BakedShadow::BakedShadow(const ShadowOnPlane& shadow, const Camera& camera, floa
       glm::vec3(1.0F / camera.fx, 0.0F, 0.0F), glm::vec3(0.0F, 1.0F / camera.fy, 0.0F),
       glm::vec3(-camera.cx / camera.fx, -camera.cy / camera.fy, 1.0F));
   const glm::mat3 rays = world_from_camera * camera_from_pixel;
-  projector_.eye = frame.coordinates(eye) - shadow.over.min;
+  projector_.eye = frame.coordinates(eye);
   projector_.height = -frame.height(eye);
   projector_.row_x = frame.x * rays;
   projector_.row_y = frame.y * rays;
   projector_.normal = frame.normal * rays;
+  if (shadow.baked == nullptr) return;
+  projector_.eye -= shadow.over.min;
   projector_.scale = 1.0F / shadow.over.size();
   projector_.size = shadow.baked->size();
 }
 
-void BakedShadow::read(int u, int v, LaneInt& alphas) {
-  project_row(projector_, static_cast<float>(u), static_cast<float>(v), reads_);
-  shadow_->baked->read(reads_);
+void PlaneShadow::read(int u, int v, LaneInt& alphas) {
+  project_row(projector_, static_cast<float>(u), static_cast<float>(v), reads_, depth_);
+  if (shadow_->baked != nullptr) {
+    shadow_->baked->read(reads_);
+  } else {
+    Lane x;
+    Lane y;
+    std::copy_n(reads_.u.begin(), kLanes, x.begin());
+    std::copy_n(reads_.v.begin(), kLanes, y.begin());
+    shade_catcher(shadow_->maps, x, y, reads_);
+  }
   alphas_of(reads_, shadow_->sun_share, strength_, alphas);
+  if (occlusion_.depth != nullptr) hide(u, v, alphas);
+}
+
+/// What lies behind the depth image does not get dark.
+void PlaneShadow::hide(int u, int v, LaneInt& alphas) const {
+  LaneInt columns;
+  LaneInt rows;
+  rows.fill(v);
+  for (std::size_t i = 0; i < kLanes; ++i) columns[i] = u + static_cast<int>(i);
+  Lane visible;
+  find_visibility(occlusion_, columns, rows, depth_, visible);
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    alphas[i] = static_cast<int>(static_cast<float>(alphas[i]) * visible[i] + 0.5F);
+  }
 }
 
 std::uint32_t darkened(std::uint32_t samples, unsigned bits, unsigned alpha) {
