@@ -236,6 +236,15 @@ Environment::Environment(const ImageF& map, const EnvironmentOptions& options) :
   }
 }
 
+glm::vec3 Environment::texel(int level, int face, int x, int y) const {
+  const int side = this->side(level);
+  const auto coordinate = [side](int at) {
+    return 2.0F * (static_cast<float>(at) + 0.5F) / static_cast<float>(side) - 1.0F;
+  };
+  return texel_at(texels(level), side,
+                  place_on_cube(face_direction(face, coordinate(x), coordinate(y))));
+}
+
 glm::vec3 Environment::radiance(const glm::vec3& direction, float roughness) const {
   const float level = std::clamp(roughness, 0.0F, 1.0F) * static_cast<float>(levels() - 1);
   const int finer = std::min(static_cast<int>(level), levels() - 1);

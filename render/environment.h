@@ -31,6 +31,9 @@ class Environment {
   const std::vector<glm::vec3>& texels(int level) const {
     return cubes_[static_cast<std::size_t>(level)];
   }
+  /// A texel of a face's level by column and row; one beyond the border is the nearest of the face
+  /// that is there.
+  glm::vec3 texel(int level, int face, int x, int y) const;
   /// As the shaders read it but without blending texels; `direction` in the map's axes.
   glm::vec3 radiance(const glm::vec3& direction, float roughness) const;
   /// Light::ambient_sh of a world whose directions `map_from_world` turns into the map's.

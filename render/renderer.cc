@@ -52,10 +52,10 @@ int shadow_map_size(const RendererOptions& options) {
 /// Whether the shadows are the same in every frame. Told by the scene, not by the last frame, so
 /// that a picture never depends on those drawn before it.
 bool stands_still(const LayerScene& scene) {
-  return std::ranges::all_of(scene.instances, [](const Instance& instance) {
-    return instance.model == nullptr || instance.animation < 0 ||
-           static_cast<std::size_t>(instance.animation) >= instance.model->animations.size();
-  });
+  return scene.still && std::ranges::all_of(scene.instances, [](const Instance& instance) {
+           return instance.model == nullptr || instance.animation < 0 ||
+                  static_cast<std::size_t>(instance.animation) >= instance.model->animations.size();
+         });
 }
 
 }  // namespace

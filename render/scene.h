@@ -84,6 +84,10 @@ struct LayerScene {
   float shadow_strength = 1.0F;  ///< 0 none .. 1 physically by the light
   float exposure = 1.0F;         ///< factor on the objects' light
   ToneMap tone_map = ToneMap::kNone;
+  /// Whether light, catchers and the instances' places stay as they are in the frames to come:
+  /// shadows of what no animation moves are then made once. Changes what is fast, and the picture
+  /// by rounding alone.
+  bool still = true;
   bool with_depth = true;  ///< Layer::depth is wanted; a second pass over the meshes
 };
 

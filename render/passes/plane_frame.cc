@@ -24,19 +24,46 @@ std::vector<Edge> all_edges(const PlanePatch& patch, const PlaneFrame& frame) {
   return edges;
 }
 
-float squared_distance(const Edge& edge, const glm::vec2& p) {
+/// The cells of one row: their places along x, and what the edges met so far say of them.
+struct CellRow {
+  std::vector<float> x;
+  std::vector<float> nearest2;  ///< squared distance
+  std::vector<int> inside;      ///< odd number of crossings
+
+  explicit CellRow(int cells)
+      : x(static_cast<std::size_t>(cells)), nearest2(x.size()), inside(x.size()) {}
+  void begin() {
+    std::ranges::fill(nearest2, std::numeric_limits<float>::max());
+    std::ranges::fill(inside, 0);
+  }
+  void add_distance(const Edge& edge, float y);
+  void add_crossings(const Edge& edge, float y);
+};
+
+/// Cells innermost and without branches, so that the compiler takes several at once.
+void CellRow::add_distance(const Edge& edge, float y) {
   const glm::vec2 along = edge.to - edge.from;
   const float length2 = glm::dot(along, along);
-  const float t =
-      length2 > 0.0F ? std::clamp(glm::dot(p - edge.from, along) / length2, 0.0F, 1.0F) : 0.0F;
-  const glm::vec2 off = p - edge.from - t * along;
-  return glm::dot(off, off);
+  const float divisor = length2 > 0.0F ? length2 : 1.0F;
+  const float up = y - edge.from.y;
+  const float across = length2 > 0.0F ? up * along.y : 0.0F;
+  const float slope = length2 > 0.0F ? along.x : 0.0F;
+  const float left = edge.from.x;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const float right = x[i] - left;
+    const float t = std::clamp((right * slope + across) / divisor, 0.0F, 1.0F);
+    const float off_x = right - t * along.x;
+    const float off_y = up - t * along.y;
+    nearest2[i] = std::min(nearest2[i], off_x * off_x + off_y * off_y);
+  }
 }
 
-bool crosses_ray(const Edge& edge, const glm::vec2& p) {
-  if ((edge.from.y > p.y) == (edge.to.y > p.y)) return false;
-  const float t = (p.y - edge.from.y) / (edge.to.y - edge.from.y);
-  return p.x < edge.from.x + t * (edge.to.x - edge.from.x);
+/// A ray to the right crosses the edge.
+void CellRow::add_crossings(const Edge& edge, float y) {
+  if ((edge.from.y > y) == (edge.to.y > y)) return;
+  const float t = (y - edge.from.y) / (edge.to.y - edge.from.y);
+  const float crossing = edge.from.x + t * (edge.to.x - edge.from.x);
+  for (std::size_t i = 0; i < x.size(); ++i) inside[i] ^= x[i] < crossing ? 1 : 0;
 }
 
 }  // namespace
@@ -94,21 +121,23 @@ ImageF distance_to_edge(const PlanePatch& patch, const PlaneFrame& frame, const 
   };
   ImageF distance(cells(size.x), cells(size.y), 1);
   const std::vector<Edge> edges = all_edges(patch, frame);
+  CellRow cells_of_row(distance.width);
+  for (std::size_t i = 0; i < cells_of_row.x.size(); ++i) {
+    const float share = (static_cast<float>(i) + 0.5F) / static_cast<float>(distance.width);
+    cells_of_row.x[i] = region.min.x + share * size.x;
+  }
   std::size_t next = 0;
   for (int row = 0; row < distance.height; ++row) {
-    for (int column = 0; column < distance.width; ++column) {
-      const glm::vec2 share(
-          (static_cast<float>(column) + 0.5F) / static_cast<float>(distance.width),
-          (static_cast<float>(row) + 0.5F) / static_cast<float>(distance.height));
-      const glm::vec2 p = region.min + share * size;
-      float nearest2 = std::numeric_limits<float>::max();
-      bool inside = false;
-      for (const Edge& edge : edges) {
-        nearest2 = std::min(nearest2, squared_distance(edge, p));
-        inside ^= crosses_ray(edge, p);
-      }
-      const float away = std::sqrt(nearest2);
-      distance.pixels[next++] = inside ? away : -away;
+    const float share = (static_cast<float>(row) + 0.5F) / static_cast<float>(distance.height);
+    const float y = region.min.y + share * size.y;
+    cells_of_row.begin();
+    for (const Edge& edge : edges) {
+      cells_of_row.add_distance(edge, y);
+      cells_of_row.add_crossings(edge, y);
+    }
+    for (std::size_t i = 0; i < cells_of_row.x.size(); ++i) {
+      const float away = std::sqrt(cells_of_row.nearest2[i]);
+      distance.pixels[next++] = cells_of_row.inside[i] != 0 ? away : -away;
     }
   }
   return distance;

@@ -14,6 +14,12 @@ namespace planecast::render {
 PLANECAST_INLINE void blend_clamped(const float* texels, const LaneInt& first, const LaneInt& width,
                                     const LaneInt& height, const Lane& x, const Lane& y,
                                     Lane& out) {
+  LaneInt top_left;
+  LaneInt top_right;
+  LaneInt low_left;
+  LaneInt low_right;
+  Lane right;
+  Lane down;
   for (std::size_t i = 0; i < kLanes; ++i) {
     const auto last_x = static_cast<float>(width[i] - 1);
     const auto last_y = static_cast<float>(height[i] - 1);
@@ -22,18 +28,28 @@ PLANECAST_INLINE void blend_clamped(const float* texels, const LaneInt& first, c
     const float inside_y = smaller(y[i] > 0.0F ? y[i] : 0.0F, last_y);
     const auto x0 = static_cast<std::int32_t>(inside_x);
     const auto y0 = static_cast<std::int32_t>(inside_y);
-    const float fx = inside_x - static_cast<float>(x0);
-    const float fy = inside_y - static_cast<float>(y0);
-    const std::int32_t right = x0 + 1 < width[i] ? 1 : 0;
-    const std::int32_t down = y0 + 1 < height[i] ? width[i] : 0;
+    right[i] = inside_x - static_cast<float>(x0);
+    down[i] = inside_y - static_cast<float>(y0);
+    const std::int32_t step_x = x0 + 1 < width[i] ? 1 : 0;
+    const std::int32_t step_y = y0 + 1 < height[i] ? width[i] : 0;
     const std::int32_t at = first[i] + y0 * width[i] + x0;
-    const float a = texels[at];
-    const float b = texels[at + right];
-    const float c = texels[at + down];
-    const float d = texels[at + down + right];
-    const float top = a + fx * (b - a);
-    const float low = c + fx * (d - c);
-    out[i] = top + fy * (low - top);
+    top_left[i] = at;
+    top_right[i] = at + step_x;
+    low_left[i] = at + step_y;
+    low_right[i] = at + step_y + step_x;
+  }
+  Lane a;
+  Lane b;
+  Lane c;
+  Lane d;
+  pick(texels, top_left, a);
+  pick(texels, top_right, b);
+  pick(texels, low_left, c);
+  pick(texels, low_right, d);
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const float top = a[i] + right[i] * (b[i] - a[i]);
+    const float low = c[i] + right[i] * (d[i] - c[i]);
+    out[i] = top + down[i] * (low - top);
   }
 }
 

@@ -40,7 +40,8 @@ struct alignas(64) TapLanes {
 void transform_footprints(const FootprintLanes& points, const glm::mat3& transform,
                           FootprintLanes& out);
 void find_taps(const FootprintLanes& at, glm::vec2 size, TapLanes& out);
-void decode_values(float* __restrict values, std::size_t count, const float* table);
+void find_levels(const FootprintLanes& at, glm::vec2 size, Lane& level);
+void find_entries(const float* values, LaneInt& entries);
 
 PLANECAST_WIDE void transform_footprints(const FootprintLanes& p, const glm::mat3& transform,
                                          FootprintLanes& out) {
@@ -93,39 +94,48 @@ PLANECAST_WIDE void find_taps(const FootprintLanes& at, glm::vec2 size, TapLanes
   out = found;
 }
 
-PLANECAST_WIDE void decode_values(float* __restrict values, std::size_t count, const float* table) {
+PLANECAST_WIDE void find_entries(const float* values, LaneInt& entries) {
   constexpr auto kScale = static_cast<float>(DecodeTable::kLast);
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < kLanes; ++i) {
     const float limited = smaller(larger(values[i], 0.0F), 1.0F);
-    values[i] = table[static_cast<std::int32_t>(limited * kScale + 0.5F)];
+    entries[i] = static_cast<std::int32_t>(limited * kScale + 0.5F);
   }
 }
 
-PLANECAST_WIDE void place_trilinear(const FootprintLanes& p, const glm::mat3& transform,
-                                    glm::vec2 size, TextureReads& reads) {
-  const float a = transform[0][0];
-  const float b = transform[1][0];
-  const float c = transform[2][0];
-  const float d = transform[0][1];
-  const float e = transform[1][1];
-  const float f = transform[2][1];
+/// Encoded values become linear; whole lanes, as reads come.
+void decode_values(float* values, std::size_t count) {
+  LaneInt entries;
+  Lane decoded;
+  for (std::size_t first = 0; first < count; first += kLanes) {
+    find_entries(values + first, entries);
+    pick(kDecoded.values(), entries, decoded);
+    std::ranges::copy(decoded, values + first);
+  }
+}
+
+PLANECAST_WIDE void find_levels(const FootprintLanes& at, glm::vec2 size, Lane& level) {
   const float width = size.x;
   const float height = size.y;
-  Lane u;
-  Lane v;
-  Lane level;
+  Lane found;
   for (std::size_t i = 0; i < kLanes; ++i) {
-    const float across_u = std::abs(a * p.u_across[i] + b * p.v_across[i]) * width;
-    const float across_v = std::abs(d * p.u_across[i] + e * p.v_across[i]) * height;
-    const float down_u = std::abs(a * p.u_down[i] + b * p.v_down[i]) * width;
-    const float down_v = std::abs(d * p.u_down[i] + e * p.v_down[i]) * height;
+    const float across_u = std::abs(at.u_across[i]) * width;
+    const float across_v = std::abs(at.v_across[i]) * height;
+    const float down_u = std::abs(at.u_down[i]) * width;
+    const float down_v = std::abs(at.v_down[i]) * height;
     const float longest = larger(larger(across_u, across_v), larger(down_u, down_v));
-    u[i] = a * p.u[i] + b * p.v[i] + c;
-    v[i] = d * p.u[i] + e * p.v[i] + f;
-    level[i] = fast_log2(smaller(larger(longest, 1e-6F), 1e6F));
+    found[i] = fast_log2(smaller(larger(longest, 1e-6F), 1e6F));
   }
-  std::ranges::copy(u, reads.u.begin());
-  std::ranges::copy(v, reads.v.begin());
+  level = found;
+}
+
+void place_trilinear(const FootprintLanes& points, const glm::mat3& transform, glm::vec2 size,
+                     TextureReads& reads) {
+  FootprintLanes at;
+  transform_footprints(points, transform, at);
+  Lane level;
+  find_levels(at, size, level);
+  std::ranges::copy(at.u, reads.u.begin());
+  std::ranges::copy(at.v, reads.v.begin());
   std::ranges::copy(level, reads.level.begin());
   reads.count = kLanes;
 }
@@ -156,7 +166,7 @@ void gather_stretched(const StretchedTaps& taps, std::size_t count, bool decode,
                       TextureReads& reads, Lane& red, Lane& green, Lane& blue) {
   if (decode) {
     for (auto* channel : {&reads.red, &reads.green, &reads.blue}) {
-      decode_values(channel->data(), reads.count, kDecoded.values());
+      decode_values(channel->data(), reads.count);
     }
   }
   std::size_t next = 0;

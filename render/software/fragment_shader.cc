@@ -98,7 +98,12 @@ void FragmentShader::shade(const Batch& batch) {
     } else {
       lanes_.arrives.fill(1.0F);
     }
-    light(lanes_, uniforms_->light);
+    if (uniforms_->reflections.texels != nullptr) {
+      find_reflections(lanes_, uniforms_->light.eye, uniforms_->reflections);
+      light_mirroring(lanes_, uniforms_->light);
+    } else {
+      light(lanes_, uniforms_->light);
+    }
   }
   finish(batch);
   if (uniforms_->occlusion.depth != nullptr) hide(batch);

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "render/software/depth_occlusion.h"
+#include "render/software/environment_lanes.h"
 #include "render/software/footprints.h"
 #include "render/software/object_surface.h"
 #include "render/software/surface_lanes.h"
@@ -13,6 +14,7 @@ namespace planecast::render {
 struct ShadingUniforms {
   LightUniforms light;
   ShadowTexels shadow;
+  Reflections reflections;
   DepthOcclusion occlusion;
   glm::ivec2 corner{};     ///< the window's first pixel in the picture
   glm::vec4 view_depth{};  ///< depth along the optical axis = view_depth . (world, 1)

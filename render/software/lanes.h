@@ -44,6 +44,21 @@ inline unsigned bits_of(const I4& mask) {
 #define PLANECAST_WIDE
 #endif
 
+/// For loops that are to stay one step at a time.
+#if defined(__GNUC__) && !defined(__clang__)
+#define PLANECAST_SCALAR \
+  __attribute__((noinline, optimize("no-tree-vectorize", "no-tree-slp-vectorize")))
+#else
+#define PLANECAST_SCALAR __attribute__((noinline))
+#endif
+
+/// Values of kLanes places. One by one through memory: taking places out of vectors and putting
+/// values into them, as compilers do where they see such a loop, takes several times longer.
+template <typename T>
+PLANECAST_SCALAR void pick(const T* from, const LaneInt& at, std::array<T, kLanes>& out) {
+  for (std::size_t i = 0; i < kLanes; ++i) out[i] = from[at[i]];
+}
+
 PLANECAST_INLINE float larger(float a, float b) { return a > b ? a : b; }
 PLANECAST_INLINE float smaller(float a, float b) { return a < b ? a : b; }
 

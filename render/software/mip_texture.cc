@@ -84,16 +84,31 @@ struct alignas(64) CornerLanes {
   LaneInt top_left, top_right, low_left, low_right;
 };
 
+template <typename T>
+struct alignas(64) TexelLanes {
+  std::array<T, kLanes> top_left, top_right, low_left, low_right;
+};
+
+template <typename T>
+PLANECAST_INLINE void pick_corners(const T* texels, const CornerLanes& at, TexelLanes<T>& out) {
+  pick(texels, at.top_left, out.top_left);
+  pick(texels, at.top_right, out.top_right);
+  pick(texels, at.low_left, out.low_left);
+  pick(texels, at.low_right, out.low_right);
+}
+
 /// Blends four texels of bytes, all in integers: first down, then across. Red and blue share a
 /// register on the way, sixteen bits each.
 PLANECAST_INLINE void blend_bytes(const std::uint32_t* texels, const CornerLanes& at,
                                   const AxisLanes& x, const AxisLanes& y, ColorLanes& out) {
   constexpr std::uint32_t kRedBlue = 0x00FF00FFU;
+  TexelLanes<std::uint32_t> texel;
+  pick_corners(texels, at, texel);
   for (std::size_t i = 0; i < kLanes; ++i) {
-    const std::uint32_t a = texels[at.top_left[i]];
-    const std::uint32_t b = texels[at.top_right[i]];
-    const std::uint32_t c = texels[at.low_left[i]];
-    const std::uint32_t d = texels[at.low_right[i]];
+    const std::uint32_t a = texel.top_left[i];
+    const std::uint32_t b = texel.top_right[i];
+    const std::uint32_t c = texel.low_left[i];
+    const std::uint32_t d = texel.low_right[i];
     const auto down = static_cast<std::uint32_t>(y.share[i]);
     const auto up = static_cast<std::uint32_t>(kTexel) - down;
     const auto right = static_cast<std::uint32_t>(x.share[i]);
@@ -112,14 +127,17 @@ PLANECAST_INLINE void blend_bytes(const std::uint32_t* texels, const CornerLanes
   }
 }
 
+/// `at`: first channels of the texels.
 PLANECAST_INLINE void blend_floats(const float* channel, const CornerLanes& at, const AxisLanes& x,
                                    const AxisLanes& y, Lane& out) {
   constexpr float kShare = 1.0F / static_cast<float>(kTexel);
+  TexelLanes<float> texel;
+  pick_corners(channel, at, texel);
   for (std::size_t i = 0; i < kLanes; ++i) {
-    const float a = channel[4 * at.top_left[i]];
-    const float b = channel[4 * at.top_right[i]];
-    const float c = channel[4 * at.low_left[i]];
-    const float d = channel[4 * at.low_right[i]];
+    const float a = texel.top_left[i];
+    const float b = texel.top_right[i];
+    const float c = texel.low_left[i];
+    const float d = texel.low_right[i];
     const float fx = kShare * static_cast<float>(x.share[i]);
     const float fy = kShare * static_cast<float>(y.share[i]);
     const float top = a + fx * (b - a);
@@ -159,6 +177,9 @@ PLANECAST_INLINE void read_level(const TexelLevels& texture, const LaneInt& leve
     return;
   }
   const float* floats = &texture.floats.front().x;
+  for (LaneInt* corner : {&at.top_left, &at.top_right, &at.low_left, &at.low_right}) {
+    for (std::size_t i = 0; i < kLanes; ++i) (*corner)[i] *= 4;
+  }
   blend_floats(floats, at, x, y, out.red);
   blend_floats(floats + 1, at, x, y, out.green);
   blend_floats(floats + 2, at, x, y, out.blue);

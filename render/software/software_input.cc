@@ -40,8 +40,7 @@ float shadow_radius_m(const Sun& sun, const SunMap& map) {
 
 bool drawable_by_processor(const LayerScene& scene, const Camera& camera,
                            const std::vector<DrawItem>& items, bool lamps) {
-  if (scene.light.environment != nullptr || scene.tone_map != ToneMap::kNone) return false;
-  if (lamps || items.size() > kMostSurfaces) return false;
+  if (scene.tone_map != ToneMap::kNone || lamps || items.size() > kMostSurfaces) return false;
   return std::ranges::all_of(items, [&](const DrawItem& item) {
     return item.mode == GL_TRIANGLES && known_material(*item.material) &&
            well_in_front(item, camera);

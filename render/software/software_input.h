@@ -24,8 +24,8 @@ struct SoftwareInput {
 };
 
 /// Whether everything in the picture is of the kinds that the processor draws: opaque triangles of
-/// metallic-roughness materials, well in front of the camera, lit by harmonics and the sun. Depends
-/// on nothing but its arguments.
+/// metallic-roughness materials, well in front of the camera, lit by the surroundings and the sun.
+/// Depends on nothing but its arguments.
 bool drawable_by_processor(const LayerScene& scene, const Camera& camera,
                            const std::vector<DrawItem>& items, bool lamps);
 

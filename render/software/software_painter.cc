@@ -40,6 +40,7 @@ void SoftwarePainter::draw(const LayerScene& scene, const Camera& camera, const 
   input.shadows = &catchers_.shadows();
   input.shading.light = light_uniforms(scene, camera, sun);
   input.shading.shadow = shadow_texels(scene.light.sun, sun);
+  input.shading.reflections = environment_.reflections(scene.light);
   input.shading.occlusion = depth_occlusion(scene, camera, kOccluderTolerance);
   input.shading.corner = {layer.bounds.x, layer.bounds.y};
   input.shading.view_depth = glm::transpose(camera.camera_from_world)[2];
@@ -52,6 +53,7 @@ void SoftwarePainter::draw(const LayerScene& scene, const Camera& camera, const 
 void SoftwarePainter::clear() {
   meshes_.clear();
   catchers_.clear();
+  environment_.clear();
   sun_signature_ = 0;
 }
 

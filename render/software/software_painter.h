@@ -41,6 +41,7 @@ class SoftwarePainter {
   SunMap sun_;
   std::uint64_t sun_signature_ = 0;
   SoftwareCatchers catchers_;
+  EnvironmentInMemory environment_;
   SoftwareLayer layer_;
 };
 

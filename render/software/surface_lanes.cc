@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "render/software/lane_vec.h"
 #include "render/software/lanes.h"
 
 // Plain arithmetic without branches or calls, so that the compiler puts neighbouring lanes side by
@@ -12,31 +13,8 @@
 namespace planecast::render {
 namespace {
 
-constexpr float kSmallestRoughness = 0.045F;
 constexpr float kSmallestCosine = 1e-3F;
 constexpr float kDielectric = 0.04F;
-
-struct Vec {
-  float x, y, z;
-};
-PLANECAST_INLINE Vec operator+(Vec a, Vec b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-PLANECAST_INLINE Vec operator-(Vec a, Vec b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-PLANECAST_INLINE Vec operator*(Vec a, float s) { return {a.x * s, a.y * s, a.z * s}; }
-PLANECAST_INLINE Vec operator*(Vec a, Vec b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
-PLANECAST_INLINE float dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-PLANECAST_INLINE Vec cross(Vec a, Vec b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-PLANECAST_INLINE Vec normalized(Vec a) { return a * (1.0F / std::sqrt(larger(dot(a, a), 1e-30F))); }
-PLANECAST_INLINE Vec vec(const glm::vec3& v) { return {v.x, v.y, v.z}; }
-PLANECAST_INLINE Vec load(const LaneVec3& lanes, std::size_t i) {
-  return {lanes.x[i], lanes.y[i], lanes.z[i]};
-}
-PLANECAST_INLINE void store(LaneVec3& lanes, std::size_t i, Vec v) {
-  lanes.x[i] = v.x;
-  lanes.y[i] = v.y;
-  lanes.z[i] = v.z;
-}
 
 struct Sh {
   std::array<Vec, 9> c;
@@ -64,9 +42,17 @@ PLANECAST_INLINE float root_of_color(float linear) {
   return std::sqrt(smaller(larger(linear, 0.0F), 1.0F));
 }
 
-/// The surroundings' light that leaves towards the eye.
-PLANECAST_INLINE Vec ambient_light(const Sh& sh, Vec n, Vec v, Vec diffuse, Vec f0, float roughness,
-                                   float alpha, float n_dot_v) {
+/// What the mirrored eye sees of the harmonics, blurred by roughness.
+PLANECAST_INLINE Vec reflected_sh(const Sh& sh, Vec n, Vec v, float alpha) {
+  constexpr float kLog2E = 1.44269504F;
+  const Vec mirrored = n * (2.0F * dot(n, v)) - v;
+  return evaluate_sh(sh, mirrored, 1.0F, exp2_of_negative(-0.45F * kLog2E * alpha),
+                     exp2_of_negative(-1.4F * kLog2E * alpha));
+}
+
+/// The surroundings' light that leaves towards the eye; `reflected`: what the mirrored eye sees.
+PLANECAST_INLINE Vec ambient_light(const Sh& sh, Vec n, Vec reflected, Vec diffuse, Vec f0,
+                                   float roughness, float n_dot_v) {
   const float rx = 1.0F - roughness;
   const float ry = 0.0425F - 0.0275F * roughness;
   const float rz = 1.04F - 0.572F * roughness;
@@ -77,10 +63,6 @@ PLANECAST_INLINE Vec ambient_light(const Sh& sh, Vec n, Vec v, Vec diffuse, Vec 
   const float again = 1.0F / larger(scale + bias, 1e-3F) - 1.0F;
   const auto specular = [&](float f) { return (f * scale + bias) * (1.0F + f * again); };
   const Vec s = {specular(f0.x), specular(f0.y), specular(f0.z)};
-  constexpr float kLog2E = 1.44269504F;
-  const Vec mirrored = n * (2.0F * dot(n, v)) - v;
-  const Vec reflected = evaluate_sh(sh, mirrored, 1.0F, exp2_of_negative(-0.45F * kLog2E * alpha),
-                                    exp2_of_negative(-1.4F * kLog2E * alpha));
   const Vec irradiance = evaluate_sh(sh, n, 1.0F, 2.0F / 3.0F, 0.25F);
   const Vec kept = {1.0F - s.x, 1.0F - s.y, 1.0F - s.z};
   return diffuse * kept * irradiance + s * reflected;
@@ -179,6 +161,13 @@ PLANECAST_WIDE void find_sun(SurfaceLanes& lanes, const ShadowTexels& shadow) {
   alignas(64) Lane centre_y;
   alignas(64) Lane compared;
   alignas(64) Lane moved;  // 1 inside the map, 0 where nothing is compared
+  alignas(64) Lane right;  // from the left texel to the right one
+  alignas(64) Lane down;
+  alignas(64) LaneInt at;
+  alignas(64) Lane top_left;
+  alignas(64) Lane top_right;
+  alignas(64) Lane low_left;
+  alignas(64) Lane low_right;
   std::int32_t any_lit = 0;
   for (std::size_t i = 0; i < kLanes; ++i) {
     const float x = size * lanes.shadow_at.x[i] - 0.5F;
@@ -195,21 +184,27 @@ PLANECAST_WIDE void find_sun(SurfaceLanes& lanes, const ShadowTexels& shadow) {
     const float dx = step_x[tap];
     const float dy = step_y[tap];
     for (std::size_t i = 0; i < kLanes; ++i) {
-      const float z = compared[i];
       const float x = centre_x[i] + moved[i] * dx;
       const float y = centre_y[i] + moved[i] * dy;
       const auto x0 = static_cast<std::int32_t>(x);
       const auto y0 = static_cast<std::int32_t>(y);
-      const float fx = x - static_cast<float>(x0);
-      const float fy = y - static_cast<float>(y0);
-      const std::int32_t at = y0 * width + x0;
-      const float a = z <= depth[at] ? 1.0F : 0.0F;
-      const float b = z <= depth[at + 1] ? 1.0F : 0.0F;
-      const float c = z <= depth[at + width] ? 1.0F : 0.0F;
-      const float d = z <= depth[at + width + 1] ? 1.0F : 0.0F;
-      const float top = a + fx * (b - a);
-      const float low = c + fx * (d - c);
-      sum[i] += top + fy * (low - top);
+      right[i] = x - static_cast<float>(x0);
+      down[i] = y - static_cast<float>(y0);
+      at[i] = y0 * width + x0;
+    }
+    pick(depth, at, top_left);
+    pick(depth + 1, at, top_right);
+    pick(depth + width, at, low_left);
+    pick(depth + width + 1, at, low_right);
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const float z = compared[i];
+      const float a = z <= top_left[i] ? 1.0F : 0.0F;
+      const float b = z <= top_right[i] ? 1.0F : 0.0F;
+      const float c = z <= low_left[i] ? 1.0F : 0.0F;
+      const float d = z <= low_right[i] ? 1.0F : 0.0F;
+      const float top = a + right[i] * (b - a);
+      const float low = c + right[i] * (d - c);
+      sum[i] += top + down[i] * (low - top);
     }
   }
   for (std::size_t i = 0; i < kLanes; ++i) lanes.arrives[i] = 0.25F * sum[i];
@@ -224,7 +219,10 @@ PLANECAST_WIDE void show_albedo(SurfaceLanes& lanes, float exposure) {
   }
 }
 
-PLANECAST_WIDE void light(SurfaceLanes& lanes, const LightUniforms& uniforms) {
+namespace {
+
+template <bool kMirrored>
+PLANECAST_INLINE void light_lanes(SurfaceLanes& lanes, const LightUniforms& uniforms) {
   const Sh sh = load_sh(uniforms.ambient_sh);
   const Vec eye = vec(uniforms.eye);
   const Vec to_light = vec(uniforms.to_light);
@@ -243,7 +241,8 @@ PLANECAST_WIDE void light(SurfaceLanes& lanes, const LightUniforms& uniforms) {
                     kDielectric * dull + albedo.y * metallic,
                     kDielectric * dull + albedo.z * metallic};
     const Vec diffuse = albedo * dull;
-    const Vec ambient = ambient_light(sh, n, v, diffuse, f0, roughness, alpha, n_dot_v);
+    const Vec reflected = kMirrored ? load(lanes.reflected, i) : reflected_sh(sh, n, v, alpha);
+    const Vec ambient = ambient_light(sh, n, reflected, diffuse, f0, roughness, n_dot_v);
     const float n_dot_l = dot(n, to_light);
     const Vec direct =
         sun_light(n, v, to_light, diffuse, f0, alpha, n_dot_v, larger(n_dot_l, 0.0F));
@@ -253,6 +252,16 @@ PLANECAST_WIDE void light(SurfaceLanes& lanes, const LightUniforms& uniforms) {
           {root_of_color(color.x * exposure), root_of_color(color.y * exposure),
            root_of_color(color.z * exposure)});
   }
+}
+
+}  // namespace
+
+PLANECAST_WIDE void light(SurfaceLanes& lanes, const LightUniforms& uniforms) {
+  light_lanes<false>(lanes, uniforms);
+}
+
+PLANECAST_WIDE void light_mirroring(SurfaceLanes& lanes, const LightUniforms& uniforms) {
+  light_lanes<true>(lanes, uniforms);
 }
 
 }  // namespace planecast::render

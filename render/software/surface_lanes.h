@@ -37,7 +37,8 @@ struct alignas(64) SurfaceLanes {
   LaneVec3 bend;                       ///< normal map's value, -1..1, scaled
   LaneVec3 albedo, emissive;
   Lane metallic, roughness, open;
-  Lane arrives;  ///< share of the sun
+  Lane arrives;        ///< share of the sun
+  LaneVec3 reflected;  ///< what the mirrored eye sees, where it is not left to light()
   // Found by orient().
   LaneVec3 geometric, shading, shadow_at;
   Lane lit;  ///< 1 where the sun can be seen by the shading normal
@@ -70,7 +71,9 @@ void orient(SurfaceLanes& lanes, const LightUniforms& uniforms);
 void find_sun(SurfaceLanes& lanes, const ShadowTexels& shadow);
 /// The albedo alone, for unlit materials.
 void show_albedo(SurfaceLanes& lanes, float exposure);
-/// Metallic-roughness shading: as model.frag without its layers.
+/// Metallic-roughness shading: as model.frag without its layers. Reflections come from the
+/// harmonics, or from `reflected`.
 void light(SurfaceLanes& lanes, const LightUniforms& uniforms);
+void light_mirroring(SurfaceLanes& lanes, const LightUniforms& uniforms);
 
 }  // namespace planecast::render

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "render/environment.h"
 #include "render/renderer.h"
 #include "render_test_tools.h"
 
@@ -49,6 +50,7 @@ struct Variant {
   bool occluded = false;
   bool animated = false;  ///< the object swings, and its mesh swells
   bool seen_by_depth = false;
+  bool reflecting = false;  ///< a smooth metal under an environment
 };
 
 /// The ball turns about its node, leans and swells at its equator.
@@ -74,6 +76,22 @@ void animate(Model& model) {
   model.animations = {swing};
 }
 
+/// A sky that brightens upwards, with a broad lamp on one side.
+std::shared_ptr<const Environment> surroundings() {
+  ImageF map(64, 32, 3);
+  for (int y = 0; y < map.height; ++y) {
+    for (int x = 0; x < map.width; ++x) {
+      const float up = 1.0F - static_cast<float>(y) / static_cast<float>(map.height);
+      const float lamp = 0.5F + 0.5F * std::sin(6.2831853F * static_cast<float>(x) / 64.0F);
+      float* pixel = &map.pixels[static_cast<std::size_t>(3 * (y * map.width + x))];
+      pixel[0] = 0.2F + 0.6F * up;
+      pixel[1] = 0.2F + 0.4F * lamp;
+      pixel[2] = 0.5F;
+    }
+  }
+  return std::make_shared<Environment>(map);
+}
+
 /// A depth image of the camera: a slanting wall in front of the right half, its edge softened, a
 /// part of the object's own depth, and nothing known in the upper rows.
 ImageF room_depth(int width, int height) {
@@ -94,6 +112,10 @@ LayerScene scene_of(const Variant& variant) {
   material.metallic = 0.4F;
   material.roughness = variant.texture_side > 0 ? 1.0F : 0.5F;
   material.emissive = {0.02F, 0.0F, 0.05F};
+  if (variant.reflecting) {
+    material.metallic = 1.0F;
+    material.roughness = 0.2F;
+  }
   material.double_sided = variant.double_sided;
   material.unlit = variant.unlit;
   constexpr int kRings = 40;
@@ -160,6 +182,11 @@ LayerScene scene_of(const Variant& variant) {
   scene.light.ambient_sh[6] = glm::vec3(0.05F);
   scene.light.sun.direction_to_light = glm::normalize(glm::vec3(0.4F, -1.0F, -0.5F));
   scene.light.sun.radiance = glm::vec3(0.9F, 0.8F, 0.7F);
+  if (variant.reflecting) {
+    scene.light.environment = surroundings();
+    scene.light.environment_from_world = glm::mat3(1, 0, 0, 0, -1, 0, 0, 0, -1);
+    scene.light.environment_gain = 0.8F;
+  }
   return scene;
 }
 
@@ -268,6 +295,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Variant{.name = "animated", .texture_side = 512, .animated = true},
                       Variant{.name = "animated_behind_planes", .occluded = true, .animated = true},
                       Variant{.name = "seen_by_depth", .texture_side = 512, .seen_by_depth = true},
+                      Variant{.name = "reflecting", .reflecting = true},
                       Variant{.name = "animated_seen_by_depth",
                               .occluded = true,
                               .animated = true,
