@@ -15,6 +15,7 @@ constexpr int kTexel = 256;
 constexpr float kByteScale = 1.0F / (255.0F * 65536.0F);
 
 /// Two neighbouring texels along one axis and how far the place is from the first to the second.
+/// Along x the second follows the first in memory.
 struct alignas(64) AxisLanes {
   LaneInt first, second, share;
 };
@@ -73,28 +74,27 @@ PLANECAST_INLINE void find_neighbours(const Lane& wrapped, const LaneInt& size,
       const std::int32_t second = first + 1;
       const std::int32_t first_up = first > 0 ? first : 0;
       const std::int32_t second_up = second > 0 ? second : 0;
+      out.share[i] = first < 0 ? 0 : out.share[i];  // the first is the second there
       out.first[i] = first_up < last ? first_up : last;
       out.second[i] = second_up < last ? second_up : last;
     }
   }
 }
 
-/// The four texels around a place.
+/// The left ones of the four texels around a place.
 struct alignas(64) CornerLanes {
-  LaneInt top_left, top_right, low_left, low_right;
+  LaneInt top, low;
 };
 
-template <typename T>
-struct alignas(64) TexelLanes {
-  std::array<T, kLanes> top_left, top_right, low_left, low_right;
+/// Two neighbours of each lane.
+struct alignas(64) TexelPairs {
+  std::array<std::uint32_t, 2 * kLanes> texels;
 };
 
-template <typename T>
-PLANECAST_INLINE void pick_corners(const T* texels, const CornerLanes& at, TexelLanes<T>& out) {
-  pick(texels, at.top_left, out.top_left);
-  pick(texels, at.top_right, out.top_right);
-  pick(texels, at.low_left, out.low_left);
-  pick(texels, at.low_right, out.low_right);
+PLANECAST_SCALAR void pick_pairs(const std::uint32_t* from, const LaneInt& at, TexelPairs& out) {
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    std::memcpy(&out.texels[2 * i], from + at[i], 2 * sizeof(std::uint32_t));
+  }
 }
 
 /// Blends four texels of bytes, all in integers: first down, then across. Red and blue share a
@@ -102,13 +102,15 @@ PLANECAST_INLINE void pick_corners(const T* texels, const CornerLanes& at, Texel
 PLANECAST_INLINE void blend_bytes(const std::uint32_t* texels, const CornerLanes& at,
                                   const AxisLanes& x, const AxisLanes& y, ColorLanes& out) {
   constexpr std::uint32_t kRedBlue = 0x00FF00FFU;
-  TexelLanes<std::uint32_t> texel;
-  pick_corners(texels, at, texel);
+  TexelPairs top;
+  TexelPairs low;
+  pick_pairs(texels, at.top, top);
+  pick_pairs(texels, at.low, low);
   for (std::size_t i = 0; i < kLanes; ++i) {
-    const std::uint32_t a = texel.top_left[i];
-    const std::uint32_t b = texel.top_right[i];
-    const std::uint32_t c = texel.low_left[i];
-    const std::uint32_t d = texel.low_right[i];
+    const std::uint32_t a = top.texels[2 * i];
+    const std::uint32_t b = top.texels[2 * i + 1];
+    const std::uint32_t c = low.texels[2 * i];
+    const std::uint32_t d = low.texels[2 * i + 1];
     const auto down = static_cast<std::uint32_t>(y.share[i]);
     const auto up = static_cast<std::uint32_t>(kTexel) - down;
     const auto right = static_cast<std::uint32_t>(x.share[i]);
@@ -131,17 +133,19 @@ PLANECAST_INLINE void blend_bytes(const std::uint32_t* texels, const CornerLanes
 PLANECAST_INLINE void blend_floats(const float* channel, const CornerLanes& at, const AxisLanes& x,
                                    const AxisLanes& y, Lane& out) {
   constexpr float kShare = 1.0F / static_cast<float>(kTexel);
-  TexelLanes<float> texel;
-  pick_corners(channel, at, texel);
+  Lane top_left;
+  Lane top_right;
+  Lane low_left;
+  Lane low_right;
+  pick(channel, at.top, top_left);
+  pick(channel + 4, at.top, top_right);
+  pick(channel, at.low, low_left);
+  pick(channel + 4, at.low, low_right);
   for (std::size_t i = 0; i < kLanes; ++i) {
-    const float a = texel.top_left[i];
-    const float b = texel.top_right[i];
-    const float c = texel.low_left[i];
-    const float d = texel.low_right[i];
     const float fx = kShare * static_cast<float>(x.share[i]);
     const float fy = kShare * static_cast<float>(y.share[i]);
-    const float top = a + fx * (b - a);
-    const float low = c + fx * (d - c);
+    const float top = top_left[i] + fx * (top_right[i] - top_left[i]);
+    const float low = low_left[i] + fx * (low_right[i] - low_left[i]);
     out[i] = top + fy * (low - top);
   }
 }
@@ -165,19 +169,16 @@ PLANECAST_INLINE void read_level(const TexelLevels& texture, const LaneInt& leve
   find_neighbours(v, height, linear, texture.wrap_t == GL_REPEAT, y);
   CornerLanes at;
   for (std::size_t i = 0; i < kLanes; ++i) {
-    const std::int32_t top = first[i] + y.first[i] * width[i];
-    const std::int32_t low = first[i] + y.second[i] * width[i];
-    at.top_left[i] = top + x.first[i];
-    at.top_right[i] = top + x.second[i];
-    at.low_left[i] = low + x.first[i];
-    at.low_right[i] = low + x.second[i];
+    const std::int32_t stride = width[i] + 1;
+    at.top[i] = first[i] + y.first[i] * stride + x.first[i];
+    at.low[i] = first[i] + y.second[i] * stride + x.first[i];
   }
   if (texture.floats.empty()) {
     blend_bytes(texture.bytes.data(), at, x, y, out);
     return;
   }
   const float* floats = &texture.floats.front().x;
-  for (LaneInt* corner : {&at.top_left, &at.top_right, &at.low_left, &at.low_right}) {
+  for (LaneInt* corner : {&at.top, &at.low}) {
     for (std::size_t i = 0; i < kLanes; ++i) (*corner)[i] *= 4;
   }
   blend_floats(floats, at, x, y, out.red);
@@ -278,19 +279,23 @@ void MipTexture::add_level(const ImageU8& image, bool decode) {
     texels_.height = image.height;
   }
   const std::size_t before = decode ? texels_.floats.size() : texels_.bytes.size();
-  const std::size_t count = image.pixels.size() / 4;
   texels_.first[static_cast<std::size_t>(texels_.count++)] = static_cast<std::int32_t>(before);
-  if (!decode) {
-    texels_.bytes.resize(before + count);
-    std::memcpy(&texels_.bytes[before], image.pixels.data(), 4 * count);
-    return;
-  }
+  const auto width = static_cast<std::size_t>(image.width);
+  const auto height = static_cast<std::size_t>(image.height);
+  const std::size_t follows = texels_.wrap_s == GL_REPEAT ? 0 : width - 1;
   const SrgbTables& tables = SrgbTables::get();
-  texels_.floats.resize(before + count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint8_t* rgba = &image.pixels[4 * i];
-    texels_.floats[before + i] = {tables.linear(rgba[0]), tables.linear(rgba[1]),
-                                  tables.linear(rgba[2]), static_cast<float>(rgba[3]) / 255.0F};
+  for (std::size_t y = 0; y < height; ++y) {
+    for (std::size_t x = 0; x <= width; ++x) {
+      const std::uint8_t* rgba = &image.pixels[4 * (y * width + (x < width ? x : follows))];
+      if (decode) {
+        texels_.floats.emplace_back(tables.linear(rgba[0]), tables.linear(rgba[1]),
+                                    tables.linear(rgba[2]), static_cast<float>(rgba[3]) / 255.0F);
+      } else {
+        std::uint32_t texel = 0;
+        std::memcpy(&texel, rgba, sizeof(texel));
+        texels_.bytes.push_back(texel);
+      }
+    }
   }
 }
 

@@ -22,7 +22,8 @@ struct alignas(64) TextureReads {
 };
 
 /// Levels of a texture in memory and how they are read. Each level is half of the one before,
-/// rounded down, at least 1.
+/// rounded down, at least 1. A row is followed by the texel that comes after its last by the wrap
+/// mode, so that neighbours lie side by side.
 struct TexelLevels {
   static constexpr std::size_t kMostLevels = 16;
   int width = 0;
