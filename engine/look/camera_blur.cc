@@ -1,7 +1,10 @@
 #include "engine/look/camera_blur.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
@@ -14,24 +17,73 @@ constexpr double kReblurSigma = 1.0;
 /// phase.
 constexpr double kSharpVariance = 0.68;
 
-/// Widths (sigma) of the edges across which the picture rises along x.
-std::vector<double> edge_widths_along_x(const cv::Mat& grey, const cv::Mat& blurred,
-                                        const BlurOptions& options) {
+/// Reaches of the second blur, across an edge and along it.
+constexpr int kAlongReach = 3;
+constexpr int kAcrossReach = kAlongReach + 1;
+
+/// The central difference across an edge of the picture blurred once more, taken where it is needed
+/// alone: two separable kernels.
+class BlurredDifference {
+ public:
+  BlurredDifference() {
+    const cv::Mat kernel = cv::getGaussianKernel(2 * kAlongReach + 1, kReblurSigma, CV_32F);
+    const auto weight = [&](int k) {
+      return std::abs(k) <= kAlongReach ? kernel.at<float>(k + kAlongReach) : 0.0F;
+    };
+    for (int k = -kAlongReach; k <= kAlongReach; ++k) along_[index(k, kAlongReach)] = weight(k);
+    for (int k = -kAcrossReach; k <= kAcrossReach; ++k) {
+      across_[index(k, kAcrossReach)] = weight(k - 1) - weight(k + 1);
+    }
+  }
+
+  /// `pixel` lies in a picture with a border as wide as the reaches; the steps lead to its
+  /// neighbours across and along the edge.
+  float at(const std::uint8_t* pixel, std::ptrdiff_t across, std::ptrdiff_t along) const {
+    float sum = 0.0F;
+    for (int j = -kAlongReach; j <= kAlongReach; ++j) {
+      const std::uint8_t* line = pixel + j * along;
+      float line_sum = 0.0F;
+      for (int k = -kAcrossReach; k <= kAcrossReach; ++k) {
+        line_sum += across_[index(k, kAcrossReach)] * static_cast<float>(line[k * across]);
+      }
+      sum += along_[index(j, kAlongReach)] * line_sum;
+    }
+    return sum;
+  }
+
+ private:
+  static std::size_t index(int k, int reach) { return static_cast<std::size_t>(k + reach); }
+
+  std::array<float, 2 * kAlongReach + 1> along_{};
+  std::array<float, 2 * kAcrossReach + 1> across_{};
+};
+
+/// Widths (sigma) of the edges across which the picture rises along x, or along y when `down`.
+/// `bordered`: the picture with a border of kAcrossReach pixels.
+std::vector<double> edge_widths(const cv::Mat& bordered, bool down, const BlurOptions& options) {
   std::vector<double> widths;
-  for (int y = 1; y + 1 < grey.rows; ++y) {
-    const auto* row = grey.ptr<float>(y);
-    const auto* above = grey.ptr<float>(y - 1);
-    const auto* below = grey.ptr<float>(y + 1);
-    const auto* soft = blurred.ptr<float>(y);
-    for (int x = 2; x + 2 < grey.cols; ++x) {
-      const float gx = row[x + 1] - row[x - 1];
-      const float strength = std::abs(gx);
-      if (strength < options.min_contrast || strength < 2.0F * std::abs(below[x] - above[x]))
+  const BlurredDifference blurred;
+  const auto least = static_cast<int>(std::ceil(options.min_contrast));
+  const auto row_step = static_cast<std::ptrdiff_t>(bordered.step);
+  const std::ptrdiff_t across = down ? row_step : 1;
+  const std::ptrdiff_t along = down ? 1 : row_step;
+  const cv::Point margin =
+      cv::Point(kAcrossReach, kAcrossReach) + (down ? cv::Point(1, 2) : cv::Point(2, 1));
+  for (int y = margin.y; y + margin.y < bordered.rows; ++y) {
+    const auto* row = bordered.ptr<std::uint8_t>(y);
+    for (int x = margin.x; x + margin.x < bordered.cols; ++x) {
+      const std::uint8_t* p = row + x;
+      const int rise = p[across] - p[-across];
+      const int strength = std::abs(rise);
+      if (strength < least || strength < 2 * std::abs(p[along] - p[-along])) {
         continue;
+      }
       // Only the crest of the edge, where the model holds.
-      if (strength < std::abs(row[x] - row[x - 2]) || strength <= std::abs(row[x + 2] - row[x]))
+      if (strength < std::abs(p[0] - p[-2 * across]) ||
+          strength <= std::abs(p[2 * across] - p[0])) {
         continue;
-      const double ratio = gx / static_cast<double>(soft[x + 1] - soft[x - 1]);
+      }
+      const double ratio = rise / static_cast<double>(blurred.at(p, across, along));
       if (ratio < 1.02) continue;
       widths.push_back(kReblurSigma / std::sqrt(ratio * ratio - 1.0));
     }
@@ -51,13 +103,12 @@ double blur_sigma(std::vector<double> widths, const BlurOptions& options) {
 }  // namespace
 
 CameraBlur estimate_blur(const cv::Mat& grey, const BlurOptions& options) {
-  cv::Mat sharp;
-  grey.convertTo(sharp, CV_32F);
-  cv::Mat soft;
-  cv::GaussianBlur(sharp, soft, cv::Size(7, 7), kReblurSigma);
+  cv::Mat bordered;
+  cv::copyMakeBorder(grey, bordered, kAcrossReach, kAcrossReach, kAcrossReach, kAcrossReach,
+                     cv::BORDER_REFLECT_101);
   CameraBlur blur;
-  blur.sigma_x_px = blur_sigma(edge_widths_along_x(sharp, soft, options), options);
-  blur.sigma_y_px = blur_sigma(edge_widths_along_x(sharp.t(), soft.t(), options), options);
+  blur.sigma_x_px = blur_sigma(edge_widths(bordered, false, options), options);
+  blur.sigma_y_px = blur_sigma(edge_widths(bordered, true, options), options);
   return blur;
 }
 
