@@ -104,23 +104,20 @@ class EdgeVote {
   std::vector<float> nearness_;
 };
 
-}  // namespace
-
-cv::Mat refine_depth_edges(const cv::Mat& depth, const cv::Mat& image, const cv::Rect& region,
-                           const DepthEdgeOptions& options) {
-  cv::Mat refined;
-  cv::medianBlur(depth, refined, 5);
+/// Votes on the band inside `region`; `depth` is read, `refined` written.
+void refine_region(const cv::Mat& depth, const cv::Mat& image, const cv::Rect& region,
+                   const DepthEdgeOptions& options, cv::Mat& refined) {
   const cv::Rect whole(cv::Point(), depth.size());
   const cv::Rect inside = region & whole;
-  if (inside.empty()) return refined;
+  if (inside.empty()) return;
   const int reach = options.band_px + options.window_px;
   const cv::Rect around = cv::Rect(inside.x - reach, inside.y - reach, inside.width + 2 * reach,
                                    inside.height + 2 * reach) &
                           whole;
-  const cv::Mat part = refined(around).clone();
+  const cv::Mat part = depth(around);
   cv::Mat band;
   const int side = 2 * options.band_px + 1;
-  cv::dilate(jumps(part, options.step_share), band, cv::Mat::ones(side, side, CV_8UC1));
+  cv::dilate(jumps(part.clone(), options.step_share), band, cv::Mat::ones(side, side, CV_8UC1));
   // The picture's noise must not vote.
   cv::Mat calm;
   cv::GaussianBlur(image(around), calm, cv::Size(3, 3), 0.8);
@@ -131,6 +128,16 @@ cv::Mat refine_depth_edges(const cv::Mat& depth, const cv::Mat& image, const cv:
       if (band.at<std::uint8_t>(at) != 0) refined.at<float>(y, x) = vote.at(at.y, at.x);
     }
   }
+}
+
+}  // namespace
+
+cv::Mat refine_depth_edges(const cv::Mat& depth, const cv::Mat& image,
+                           const std::vector<cv::Rect>& regions, const DepthEdgeOptions& options) {
+  cv::Mat calm;
+  cv::medianBlur(depth, calm, 5);
+  cv::Mat refined = calm.clone();
+  for (const cv::Rect& region : regions) refine_region(calm, image, region, options, refined);
   return refined;
 }
 

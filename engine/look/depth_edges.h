@@ -1,6 +1,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <vector>
 
 namespace planecast::engine {
 
@@ -17,8 +18,9 @@ struct DepthEdgeOptions {
 /// of its window: for the one whose pixels, weighed by how much they look like it and how near they
 /// are (a joint bilateral vote: Petschnigg et al. 2004), weigh more; it takes their weighted mean.
 /// Elsewhere depths stay, but for a median over single wild pixels. `depth` is CV_32F metres, 0 =
-/// unknown; `image` is 8-bit grey or BGR of its size; outside `region` nothing is decided.
-cv::Mat refine_depth_edges(const cv::Mat& depth, const cv::Mat& image, const cv::Rect& region,
+/// unknown; `image` is 8-bit grey or BGR of its size; outside `regions` nothing is decided.
+cv::Mat refine_depth_edges(const cv::Mat& depth, const cv::Mat& image,
+                           const std::vector<cv::Rect>& regions,
                            const DepthEdgeOptions& options = {});
 
 }  // namespace planecast::engine

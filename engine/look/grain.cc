@@ -7,8 +7,6 @@
 namespace planecast::engine {
 namespace {
 
-constexpr double kInvisibleGrain = 0.3;  ///< grey levels: lost in the rounding
-
 /// SplitMix64 (Steele, Lea, Flood 2014): well mixed bits of consecutive numbers, the same
 /// everywhere.
 std::uint64_t mix(std::uint64_t x) {
@@ -62,7 +60,7 @@ Grain::Grain(std::uint64_t seed) : seed_(seed), tile_(kTile, kTile, CV_32FC1) {
 }
 
 void Grain::apply(double sigma, int frame, ObjectLayer& layer) const {
-  if (sigma < kInvisibleGrain || layer.depth.empty()) return;
+  if (sigma < kVisibleGrain || layer.depth.empty()) return;
   const std::uint64_t place = mix(seed_ + 0x1000003ULL * static_cast<std::uint64_t>(frame));
   const int shift_x = static_cast<int>(place % kTile);
   const int shift_y = static_cast<int>((place >> 32) % kTile);

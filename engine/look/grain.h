@@ -12,6 +12,9 @@ namespace planecast::engine {
 /// CV_8UC1.
 double estimate_grain(const cv::Mat& grey);
 
+/// Less is lost in the rounding: not applied.
+inline constexpr double kVisibleGrain = 0.3;  ///< grey levels
+
 /// Noise for the object layer: a tile of Gaussian values made once from the seed, laid at a place
 /// that depends on the seed and the frame's number, so that no two frames carry the same grain and
 /// every run does.

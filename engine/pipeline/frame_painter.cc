@@ -1,6 +1,7 @@
 #include "engine/pipeline/frame_painter.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cstring>
 #include <opencv2/imgproc.hpp>
@@ -14,9 +15,10 @@
 namespace planecast::engine {
 namespace {
 
-constexpr double kNearShare = 0.02;      ///< near plane, of the median depth
-constexpr double kFarShare = 100.0;      ///< far plane, of the median depth
-constexpr float kShadowSoftness = 2.5F;  ///< shadow-map texels: rooms have no hard shadows
+constexpr double kNearShare = 0.02;  ///< near plane, of the median depth
+constexpr double kFarShare = 100.0;  ///< far plane, of the median depth
+/// Radius of shadows' edges in shares of a shadow map's side: rooms have no hard shadows.
+constexpr float kShadowSoftness = 2.5F / 1024.0F;
 
 class StopWatch {
  public:
@@ -31,8 +33,16 @@ class StopWatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-render::RendererOptions renderer_options(const PainterOptions& options) {
+/// About a texel a pixel where the content fills the picture, which it hardly ever does.
+int shadow_map_size(const slam::Camera& camera) {
+  return std::clamp(static_cast<int>(std::bit_ceil(static_cast<unsigned>(camera.height))), 256,
+                    1024);
+}
+
+render::RendererOptions renderer_options(const PainterOptions& options,
+                                         const slam::Camera& camera) {
   render::RendererOptions result;
+  result.shadow_map_size = shadow_map_size(camera);
   result.shader_dir = options.shader_dir.string();
   result.only_opengl = options.only_opengl;
   return result;
@@ -53,10 +63,13 @@ FramePainter::FramePainter(const Reconstruction& reconstruction, const Content& 
       light_(light),
       warp_(drawing_camera(reconstruction.camera, options.look.lens)),
       grain_(options.seed),
-      renderer_(renderer_options(options)) {
+      renderer_(renderer_options(options, reconstruction.camera)) {
   set_content(content);
   scene_.light.sun.casts_shadow = options.placing.shadows;
-  scene_.light.sun.softness = kShadowSoftness;
+  scene_.light.sun.softness =
+      kShadowSoftness * static_cast<float>(shadow_map_size(reconstruction.camera));
+  // Live, the map and what is known of the light change from frame to frame.
+  scene_.still = !options.placing.causal;
 }
 
 void FramePainter::set_light(const SceneLight& light) {
@@ -80,8 +93,9 @@ void FramePainter::set_depth(const slam::FrameInput& frame, const slam::Pose& wo
   if (!wanted || frame.depth.empty()) return;
   cv::Mat filtered;
   if (options_.look.clean_edges) {
-    const cv::Rect region = placed_->bounds(frame.index, reconstruction_.camera, world_from_cam);
-    filtered = refine_depth_edges(frame.depth, frame.image, region);
+    filtered =
+        refine_depth_edges(frame.depth, frame.image,
+                           placed_->bounds(frame.index, reconstruction_.camera, world_from_cam));
   } else {
     // Single wild pixels of the sensor would pepper the object.
     cv::medianBlur(frame.depth, filtered, 5);
@@ -103,6 +117,8 @@ bool FramePainter::paint(const slam::FrameInput& frame, const slam::Pose& world_
   set_light(light_.at(frame.index));
   set_depth(frame, world_from_cam);
   placed_->at(frame.index, time_s, scene_);
+  const double grain = options_.look.grain ? estimate_grain(grey) : 0.0;
+  scene_.with_depth = grain >= kVisibleGrain;  // where grain goes
   render::Camera camera = to_render_camera(warp_.layer_camera(), world_from_cam.inverse());
   camera.near_plane = static_cast<float>(kNearShare * reconstruction_.median_depth);
   camera.far_plane = static_cast<float>(kFarShare * reconstruction_.median_depth);
@@ -117,7 +133,7 @@ bool FramePainter::paint(const slam::FrameInput& frame, const slam::Pose& world_
 
   if (options_.look.blur) apply_blur(estimate_blur(grey), layer);
   layer = warp_.to_raw(layer);
-  if (options_.look.grain) grain_.apply(estimate_grain(grey), frame.index, layer);
+  grain_.apply(grain, frame.index, layer);
   composite(layer, picture);
   times_.composite_ms = watch.lap_ms();
   return true;

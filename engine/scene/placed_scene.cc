@@ -98,10 +98,10 @@ void PlacedScene::place_patches(const std::vector<MapPatch>& from, int frame_ind
   }
 }
 
-cv::Rect PlacedScene::bounds(int frame_index, const slam::Camera& camera,
-                             const slam::Pose& world_from_cam) const {
+std::vector<cv::Rect> PlacedScene::bounds(int frame_index, const slam::Camera& camera,
+                                          const slam::Pose& world_from_cam) const {
   const cv::Rect whole(0, 0, camera.width, camera.height);
-  cv::Rect all;
+  std::vector<cv::Rect> all;
   for (std::size_t i = 0; i < content_.items.size(); ++i) {
     const ContentItem& item = content_.items[i];
     const auto plane = world_from_plane_of(i, frame_index);
@@ -111,7 +111,7 @@ cv::Rect PlacedScene::bounds(int frame_index, const slam::Camera& camera,
     Eigen::AlignedBox2d box;
     for (const Eigen::Vector3d& corner : roomy_box(item.placed)) {
       const Eigen::Vector3d p = cam_from_anchor * corner;
-      if (p.z() < 1e-3 * reconstruction_.median_depth) return whole;
+      if (p.z() < 1e-3 * reconstruction_.median_depth) return {whole};
       // Far outside the picture the lens model folds back.
       const Eigen::Vector2d pixel = camera.project(p);
       box.extend(camera.contains(pixel) ? camera.distort(pixel) : pixel);
@@ -122,9 +122,9 @@ cv::Rect PlacedScene::bounds(int frame_index, const slam::Camera& camera,
     const cv::Rect item_bounds(static_cast<int>(box.min().x()), static_cast<int>(box.min().y()),
                                static_cast<int>(box.sizes().x()) + 2,
                                static_cast<int>(box.sizes().y()) + 2);
-    all = all.empty() ? item_bounds : all | item_bounds;
+    all.push_back(item_bounds & whole);
   }
-  return all & whole;
+  return all;
 }
 
 void PlacedScene::at(int frame_index, double time_s, render::LayerScene& scene) {

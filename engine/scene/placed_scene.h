@@ -30,10 +30,9 @@ class PlacedScene {
   /// Puts into `scene` what stands where at a frame; `time_s` since the first frame runs animations
   /// and videos. In a causal run, what stands on a plane that is not known yet is left out.
   void at(int frame_index, double time_s, render::LayerScene& scene);
-  /// Raw pixels that the objects (not their shadows) can cover at a frame, with room for
-  /// animations.
-  cv::Rect bounds(int frame_index, const slam::Camera& camera,
-                  const slam::Pose& world_from_cam) const;
+  /// Raw pixels that each object (not its shadow) can cover at a frame, with room for animations.
+  std::vector<cv::Rect> bounds(int frame_index, const slam::Camera& camera,
+                               const slam::Pose& world_from_cam) const;
 
  private:
   std::optional<slam::Pose> world_from_plane(int plane_id, int frame_index) const;

@@ -57,10 +57,10 @@ TEST(DepthEdges, GoToThePicturesEdges) {
   cv::medianBlur(depth, median, 5);
   EXPECT_LT(right_share(median), 0.8);
   const cv::Rect whole(0, 0, kWidth, kHeight);
-  EXPECT_GT(right_share(refine_depth_edges(depth, image, whole)), 0.97);
+  EXPECT_GT(right_share(refine_depth_edges(depth, image, {whole})), 0.97);
   cv::Mat colour;
   cv::cvtColor(image, colour, cv::COLOR_GRAY2BGR);
-  EXPECT_GT(right_share(refine_depth_edges(depth, colour, whole)), 0.97);
+  EXPECT_GT(right_share(refine_depth_edges(depth, colour, {whole})), 0.97);
 }
 
 TEST(DepthEdges, LeaveSurfacesAlone) {
@@ -69,10 +69,10 @@ TEST(DepthEdges, LeaveSurfacesAlone) {
   make(image, depth);
   cv::Mat slope(kHeight, kWidth, CV_32FC1);
   for (int x = 0; x < kWidth; ++x) slope.col(x).setTo(1.0 + 0.005 * x);
-  const cv::Mat refined = refine_depth_edges(slope, image, {0, 0, kWidth, kHeight});
+  const cv::Mat refined = refine_depth_edges(slope, image, {cv::Rect(0, 0, kWidth, kHeight)});
   EXPECT_LT(cv::norm(refined, slope, cv::NORM_INF), 0.011);  // the median at the border
   // Outside the region nothing is decided.
-  const cv::Mat untouched = refine_depth_edges(depth, image, cv::Rect());
+  const cv::Mat untouched = refine_depth_edges(depth, image, {cv::Rect()});
   cv::Mat median;
   cv::medianBlur(depth, median, 5);
   EXPECT_EQ(cv::norm(untouched, median, cv::NORM_INF), 0.0);
