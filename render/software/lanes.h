@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #ifdef __SSE4_1__
 #include <smmintrin.h>
 #endif
@@ -57,6 +58,18 @@ inline unsigned bits_of(const I4& mask) {
 template <typename T>
 PLANECAST_SCALAR void pick(const T* from, const LaneInt& at, std::array<T, kLanes>& out) {
   for (std::size_t i = 0; i < kLanes; ++i) out[i] = from[at[i]];
+}
+
+/// Two neighbours of each lane, one after the other.
+template <typename T>
+struct alignas(64) LanePairs {
+  std::array<T, 2 * kLanes> values;
+};
+template <typename T>
+PLANECAST_SCALAR void pick_pairs(const T* from, const LaneInt& at, LanePairs<T>& out) {
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    std::memcpy(&out.values[2 * i], from + at[i], 2 * sizeof(T));
+  }
 }
 
 PLANECAST_INLINE float larger(float a, float b) { return a > b ? a : b; }

@@ -86,31 +86,20 @@ struct alignas(64) CornerLanes {
   LaneInt top, low;
 };
 
-/// Two neighbours of each lane.
-struct alignas(64) TexelPairs {
-  std::array<std::uint32_t, 2 * kLanes> texels;
-};
-
-PLANECAST_SCALAR void pick_pairs(const std::uint32_t* from, const LaneInt& at, TexelPairs& out) {
-  for (std::size_t i = 0; i < kLanes; ++i) {
-    std::memcpy(&out.texels[2 * i], from + at[i], 2 * sizeof(std::uint32_t));
-  }
-}
-
 /// Blends four texels of bytes, all in integers: first down, then across. Red and blue share a
 /// register on the way, sixteen bits each.
 PLANECAST_INLINE void blend_bytes(const std::uint32_t* texels, const CornerLanes& at,
                                   const AxisLanes& x, const AxisLanes& y, ColorLanes& out) {
   constexpr std::uint32_t kRedBlue = 0x00FF00FFU;
-  TexelPairs top;
-  TexelPairs low;
+  LanePairs<std::uint32_t> top;
+  LanePairs<std::uint32_t> low;
   pick_pairs(texels, at.top, top);
   pick_pairs(texels, at.low, low);
   for (std::size_t i = 0; i < kLanes; ++i) {
-    const std::uint32_t a = top.texels[2 * i];
-    const std::uint32_t b = top.texels[2 * i + 1];
-    const std::uint32_t c = low.texels[2 * i];
-    const std::uint32_t d = low.texels[2 * i + 1];
+    const std::uint32_t a = top.values[2 * i];
+    const std::uint32_t b = top.values[2 * i + 1];
+    const std::uint32_t c = low.values[2 * i];
+    const std::uint32_t d = low.values[2 * i + 1];
     const auto down = static_cast<std::uint32_t>(y.share[i]);
     const auto up = static_cast<std::uint32_t>(kTexel) - down;
     const auto right = static_cast<std::uint32_t>(x.share[i]);

@@ -61,8 +61,8 @@ struct ObjectTriangle {
 struct Fragment {
   std::uint16_t x = 0;
   std::uint16_t y = 0;
-  std::int32_t triangle = 0;  ///< index
-  std::uint8_t samples = 0;
+  std::int32_t triangle = 0;            ///< index
+  std::uint8_t samples = 0;             ///< one bit each
   std::array<std::uint8_t, 3> color{};  ///< shaded, sRGB, premultiplied
   std::uint8_t alpha = 255;             ///< what a depth image leaves of it
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
@@ -12,6 +13,11 @@
 #include "render/software/screen_polygon.h"
 
 namespace planecast::render {
+namespace {
+
+constexpr unsigned kAllSamples = 15;
+
+}  // namespace
 
 void SoftwareLayer::draw(const SoftwareInput& input, const Window& window, PassClock& clock,
                          Layer& layer) {
@@ -111,27 +117,27 @@ void SoftwareLayer::find_fragments() {
     for (int x = begin; x < end; ++x) {
       const I4 triangle = samples_.block(x, y).triangle;
       const std::int32_t first = triangle[0];
-      const bool same = bits_of(triangle == I4{first, first, first, first}) == 15U;
-      if (same && first == 0) continue;
-      const std::size_t of_pixel = fragments_.size();
+      if (bits_of(triangle == first) == kAllSamples) {
+        if (first != 0) add_fragment(x, y, first, kAllSamples);
+        continue;
+      }
+      unsigned left = kAllSamples;
       for (int s = 0; s < 4; ++s) {
-        if (triangle[s] == 0) continue;
-        const auto known = std::find_if(
-            fragments_.begin() + static_cast<std::ptrdiff_t>(of_pixel), fragments_.end(),
-            [&](const Fragment& fragment) { return fragment.triangle == triangle[s]; });
-        if (known != fragments_.end()) {
-          ++known->samples;
-          continue;
-        }
-        fragments_.push_back({static_cast<std::uint16_t>(x),
-                              static_cast<std::uint16_t>(y),
-                              triangle[s],
-                              static_cast<std::uint8_t>(same ? 4 : 1),
-                              {}});
-        if (same) break;
+        if ((left >> s & 1U) == 0) continue;
+        const unsigned alike = bits_of(triangle == triangle[s]);
+        left &= ~alike;
+        if (triangle[s] != 0) add_fragment(x, y, triangle[s], alike);
       }
     }
   }
+}
+
+void SoftwareLayer::add_fragment(int x, int y, std::int32_t triangle, unsigned samples) {
+  Fragment& fragment = fragments_.emplace_back();
+  fragment.x = static_cast<std::uint16_t>(x);
+  fragment.y = static_cast<std::uint16_t>(y);
+  fragment.triangle = triangle;
+  fragment.samples = static_cast<std::uint8_t>(samples);
 }
 
 /// The mean of each pixel's samples, rounded to nearest.
@@ -148,7 +154,7 @@ void SoftwareLayer::write_colors(const Window& window, Layer& layer) const {
       const bool object = next != fragments_.end() && next->y == y && next->x == x;
       if (!object && shadow[x] == 0) continue;
       std::uint8_t* rgba = &row[4 * static_cast<std::size_t>(x)];
-      if (object && next->samples == 4 && next->alpha != 0) {
+      if (object && next->samples == kAllSamples && next->alpha != 0) {
         std::ranges::copy(next->color, rgba);
         rgba[3] = next->alpha;
         ++next;
@@ -160,23 +166,24 @@ void SoftwareLayer::write_colors(const Window& window, Layer& layer) const {
       }
       const auto first = next;
       while (next != fragments_.end() && next->y == y && next->x == x) ++next;
-      write_mean({first, next}, samples_.block(x, y).triangle, shadow[x], rgba);
+      write_mean({first, next}, shadow[x], rgba);
     }
   }
 }
 
 /// Samples that show nothing, or what the depth image hides, show the shadow.
-void SoftwareLayer::write_mean(std::span<const Fragment> fragments, const I4& triangle,
-                               std::uint32_t shadow, std::uint8_t* rgba) {
+void SoftwareLayer::write_mean(std::span<const Fragment> fragments, std::uint32_t shadow,
+                               std::uint8_t* rgba) {
   std::array<int, 4> sum{};
-  I4 bare = triangle == 0;
+  unsigned bare = kAllSamples;
   for (const Fragment& fragment : fragments) {
-    for (std::size_t c = 0; c < 3; ++c) sum[c] += fragment.samples * fragment.color[c];
-    sum[3] += fragment.samples * fragment.alpha;
-    if (fragment.alpha == 0) bare |= triangle == fragment.triangle;
+    const int samples = std::popcount(fragment.samples);
+    for (std::size_t c = 0; c < 3; ++c) sum[c] += samples * fragment.color[c];
+    sum[3] += samples * fragment.alpha;
+    if (fragment.alpha != 0) bare &= ~static_cast<unsigned>(fragment.samples);
   }
   for (int s = 0; s < 4; ++s) {
-    if (bare[s] != 0) sum[3] += static_cast<int>((shadow >> (8 * s)) & 0xFFU);
+    if ((bare >> s & 1U) != 0) sum[3] += static_cast<int>((shadow >> (8 * s)) & 0xFFU);
   }
   for (std::size_t c = 0; c < 4; ++c) rgba[c] = static_cast<std::uint8_t>((sum[c] + 2) / 4);
 }

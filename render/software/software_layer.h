@@ -28,9 +28,10 @@ class SoftwareLayer {
   void draw_shadow_row(PlaneShadow& shadow, const DepthPlane& depth, const Window& window,
                        const SampleGrid::Area& area, int y);
   void find_fragments();
+  void add_fragment(int x, int y, std::int32_t triangle, unsigned samples);
   void write_colors(const Window& window, Layer& layer) const;
-  static void write_mean(std::span<const Fragment> fragments, const I4& triangle,
-                         std::uint32_t shadow, std::uint8_t* rgba);
+  static void write_mean(std::span<const Fragment> fragments, std::uint32_t shadow,
+                         std::uint8_t* rgba);
   void write_depth(const SoftwareInput& input, const Window& window, Layer& layer) const;
 
   VisibleTriangles visible_;

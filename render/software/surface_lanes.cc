@@ -164,10 +164,8 @@ PLANECAST_WIDE void find_sun(SurfaceLanes& lanes, const ShadowTexels& shadow) {
   alignas(64) Lane right;  // from the left texel to the right one
   alignas(64) Lane down;
   alignas(64) LaneInt at;
-  alignas(64) Lane top_left;
-  alignas(64) Lane top_right;
-  alignas(64) Lane low_left;
-  alignas(64) Lane low_right;
+  LanePairs<float> upper;
+  LanePairs<float> lower;
   std::int32_t any_lit = 0;
   for (std::size_t i = 0; i < kLanes; ++i) {
     const float x = size * lanes.shadow_at.x[i] - 0.5F;
@@ -192,16 +190,14 @@ PLANECAST_WIDE void find_sun(SurfaceLanes& lanes, const ShadowTexels& shadow) {
       down[i] = y - static_cast<float>(y0);
       at[i] = y0 * width + x0;
     }
-    pick(depth, at, top_left);
-    pick(depth + 1, at, top_right);
-    pick(depth + width, at, low_left);
-    pick(depth + width + 1, at, low_right);
+    pick_pairs(depth, at, upper);
+    pick_pairs(depth + width, at, lower);
     for (std::size_t i = 0; i < kLanes; ++i) {
       const float z = compared[i];
-      const float a = z <= top_left[i] ? 1.0F : 0.0F;
-      const float b = z <= top_right[i] ? 1.0F : 0.0F;
-      const float c = z <= low_left[i] ? 1.0F : 0.0F;
-      const float d = z <= low_right[i] ? 1.0F : 0.0F;
+      const float a = z <= upper.values[2 * i] ? 1.0F : 0.0F;
+      const float b = z <= upper.values[2 * i + 1] ? 1.0F : 0.0F;
+      const float c = z <= lower.values[2 * i] ? 1.0F : 0.0F;
+      const float d = z <= lower.values[2 * i + 1] ? 1.0F : 0.0F;
       const float top = a + right[i] * (b - a);
       const float low = c + right[i] * (d - c);
       sum[i] += top + down[i] * (low - top);

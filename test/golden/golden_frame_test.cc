@@ -36,7 +36,7 @@ render::Camera camera_over_the_plane() {
 }
 
 /// The robot in mid-wave on a square of one metre, over a grey frame.
-cv::Mat draw_robot() {
+cv::Mat draw_robot(bool only_opengl) {
   const render::ImportResult imported =
       render::import_gltf((kRoot / "assets/models/robot.glb").string());
   if (!imported.model) return {};
@@ -55,6 +55,7 @@ cv::Mat draw_robot() {
   scene.light = render::Light::uniform(glm::vec3(0.5F), sun);
   render::RendererOptions options;
   options.shader_dir = (kRoot / "assets/shaders").string();
+  options.only_opengl = only_opengl;
   render::Renderer renderer(options);
   const render::Layer layer = renderer.draw_layer(scene, camera_over_the_plane());
 
@@ -74,10 +75,9 @@ cv::Mat draw_robot() {
   return frame;
 }
 
-TEST(GoldenFrame, RobotOnAPlane) {
-  const cv::Mat actual = draw_robot();
+void expect_golden(const cv::Mat& actual, const char* name) {
   ASSERT_FALSE(actual.empty());
-  const fs::path golden = kRoot / "test/golden/expected/robot_on_a_plane.png";
+  const fs::path golden = kRoot / "test/golden/expected" / name;
   if (std::getenv("PLANECAST_UPDATE_GOLDEN") != nullptr) {
     ASSERT_TRUE(cv::imwrite(golden.string(), actual));
   }
@@ -87,6 +87,12 @@ TEST(GoldenFrame, RobotOnAPlane) {
   ASSERT_TRUE(difference.comparable) << golden << " is missing or of another size";
   EXPECT_LE(difference.share_beyond, kMaxShareBeyond);
   EXPECT_GT(difference.ssim, 0.999);
+}
+
+TEST(GoldenFrame, RobotOnAPlane) { expect_golden(draw_robot(true), "robot_on_a_plane.png"); }
+
+TEST(GoldenFrame, RobotOnAPlaneByTheProcessor) {
+  expect_golden(draw_robot(false), "robot_on_a_plane_by_processor.png");
 }
 
 }  // namespace
