@@ -7,7 +7,7 @@ packages=(
   build-essential python3 cmake ninja-build pkg-config ccache git ca-certificates
   libopencv-dev libopencv-contrib-dev libeigen3-dev libceres-dev libflann-dev liblz4-dev
   libglm-dev libosmesa6-dev libgl-dev libegl-dev libtinygltf-dev
-  libdraco-dev libmeshoptimizer-dev libwebp-dev libstb-dev
+  libdraco-dev libmeshoptimizer-dev libjpeg-dev libwebp-dev libstb-dev
   libimgui-dev libglfw3-dev libglfw3 libx11-dev
   libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libyaml-cpp-dev
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev ffmpeg

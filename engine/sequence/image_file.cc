@@ -16,6 +16,7 @@ extern "C" {
 }
 
 #include "engine/sequence/image_check.h"
+#include "engine/sequence/jpeg_file.h"
 #include "engine/sequence/labels.h"
 #include "engine/user_error.h"
 
@@ -50,7 +51,8 @@ cv::Mat decode(const fs::path& file, int flags) {
   if (!check.damage.empty()) throw UserError(fmt::format("{}: {}", file.string(), check.damage));
   cv::Mat image;
   try {
-    image = cv::imdecode(bytes, flags);
+    if (flags == cv::IMREAD_COLOR) image = decode_common_jpeg(bytes);
+    if (image.empty()) image = cv::imdecode(bytes, flags);
   } catch (const cv::Exception&) {
     image.release();
   }
