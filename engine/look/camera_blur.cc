@@ -58,6 +58,29 @@ class BlurredDifference {
   std::array<float, 2 * kAcrossReach + 1> across_{};
 };
 
+/// How to walk over a picture: to the neighbours across and along the edges looked for.
+struct Steps {
+  std::ptrdiff_t across = 0;
+  std::ptrdiff_t along = 0;
+};
+
+/// Whether each of `count` pixels stands on the crest of an edge, where the model holds: it rises
+/// by `least` at least, twice as much as along the edge, and most of all in its neighbourhood. No
+/// branches, so that the compiler takes many pixels at once.
+void find_crests(const std::uint8_t* pixels, int count, const Steps& steps, int least,
+                 std::uint8_t* crests) {
+  const std::ptrdiff_t across = steps.across;
+  const std::ptrdiff_t along = steps.along;
+  for (int i = 0; i < count; ++i) {
+    const std::uint8_t* p = pixels + i;
+    const int strength = std::abs(p[across] - p[-across]);
+    const bool strong = (strength >= least) & (strength >= 2 * std::abs(p[along] - p[-along]));
+    const bool crest =
+        (strength >= std::abs(p[0] - p[-2 * across])) & (strength > std::abs(p[2 * across] - p[0]));
+    crests[i] = strong & crest ? 1 : 0;
+  }
+}
+
 /// Widths (sigma) of the edges across which the picture rises along x, or along y when `down`.
 /// `bordered`: the picture with a border of kAcrossReach pixels.
 std::vector<double> edge_widths(const cv::Mat& bordered, bool down, const BlurOptions& options) {
@@ -65,25 +88,19 @@ std::vector<double> edge_widths(const cv::Mat& bordered, bool down, const BlurOp
   const BlurredDifference blurred;
   const auto least = static_cast<int>(std::ceil(options.min_contrast));
   const auto row_step = static_cast<std::ptrdiff_t>(bordered.step);
-  const std::ptrdiff_t across = down ? row_step : 1;
-  const std::ptrdiff_t along = down ? 1 : row_step;
+  const Steps steps = down ? Steps{row_step, 1} : Steps{1, row_step};
   const cv::Point margin =
       cv::Point(kAcrossReach, kAcrossReach) + (down ? cv::Point(1, 2) : cv::Point(2, 1));
+  const int count = bordered.cols - 2 * margin.x;
+  std::vector<std::uint8_t> crests(static_cast<std::size_t>(std::max(count, 0)));
   for (int y = margin.y; y + margin.y < bordered.rows; ++y) {
-    const auto* row = bordered.ptr<std::uint8_t>(y);
-    for (int x = margin.x; x + margin.x < bordered.cols; ++x) {
-      const std::uint8_t* p = row + x;
-      const int rise = p[across] - p[-across];
-      const int strength = std::abs(rise);
-      if (strength < least || strength < 2 * std::abs(p[along] - p[-along])) {
-        continue;
-      }
-      // Only the crest of the edge, where the model holds.
-      if (strength < std::abs(p[0] - p[-2 * across]) ||
-          strength <= std::abs(p[2 * across] - p[0])) {
-        continue;
-      }
-      const double ratio = rise / static_cast<double>(blurred.at(p, across, along));
+    const std::uint8_t* row = bordered.ptr<std::uint8_t>(y) + margin.x;
+    find_crests(row, count, steps, least, crests.data());
+    for (int i = 0; i < count; ++i) {
+      if (crests[static_cast<std::size_t>(i)] == 0) continue;
+      const std::uint8_t* p = row + i;
+      const int rise = p[steps.across] - p[-steps.across];
+      const double ratio = rise / static_cast<double>(blurred.at(p, steps.across, steps.along));
       if (ratio < 1.02) continue;
       widths.push_back(kReblurSigma / std::sqrt(ratio * ratio - 1.0));
     }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace planecast::render {
 namespace {
@@ -32,8 +31,8 @@ struct CellRow {
 
   explicit CellRow(int cells)
       : x(static_cast<std::size_t>(cells)), nearest2(x.size()), inside(x.size()) {}
-  void begin() {
-    std::ranges::fill(nearest2, std::numeric_limits<float>::max());
+  void begin(float reach_m) {
+    std::ranges::fill(nearest2, reach_m * reach_m);
     std::ranges::fill(inside, 0);
   }
   void add_distance(const Edge& edge, float y);
@@ -113,7 +112,7 @@ PlaneRegion outer_region(const PlanePatch& patch, const PlaneFrame& frame) {
 }
 
 ImageF distance_to_edge(const PlanePatch& patch, const PlaneFrame& frame, const PlaneRegion& region,
-                        int longest_side) {
+                        int longest_side, float reach_m) {
   const glm::vec2 size = region.size();
   const float cell = std::max(size.x, size.y) / static_cast<float>(longest_side);
   const auto cells = [&](float side) {
@@ -130,9 +129,10 @@ ImageF distance_to_edge(const PlanePatch& patch, const PlaneFrame& frame, const 
   for (int row = 0; row < distance.height; ++row) {
     const float share = (static_cast<float>(row) + 0.5F) / static_cast<float>(distance.height);
     const float y = region.min.y + share * size.y;
-    cells_of_row.begin();
+    cells_of_row.begin(reach_m);
     for (const Edge& edge : edges) {
-      cells_of_row.add_distance(edge, y);
+      const auto [low, high] = std::minmax(edge.from.y, edge.to.y);
+      if (y >= low - reach_m && y <= high + reach_m) cells_of_row.add_distance(edge, y);
       cells_of_row.add_crossings(edge, y);
     }
     for (std::size_t i = 0; i < cells_of_row.x.size(); ++i) {

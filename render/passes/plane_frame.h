@@ -1,6 +1,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <limits>
 #include <vector>
 
 #include "render/image.h"
@@ -47,8 +48,9 @@ PlaneRegion outer_region(const PlanePatch& patch, const PlaneFrame& frame);
 
 /// Distance to the nearest edge in metres, positive inside (even-odd over all rings), on a grid
 /// over `region` whose cell centres are spread as a texture's texels; at most `longest_side` cells
-/// a side.
+/// a side. Farther from every edge than `reach_m` the distance need not be found and is said to be
+/// that.
 ImageF distance_to_edge(const PlanePatch& patch, const PlaneFrame& frame, const PlaneRegion& region,
-                        int longest_side);
+                        int longest_side, float reach_m = std::numeric_limits<float>::infinity());
 
 }  // namespace planecast::render

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "render/mip_levels.h"
+#include "render/passes/content_hash.h"
 
 namespace planecast::render {
 namespace {
@@ -121,12 +122,21 @@ void SoftwareCatchers::prepare(const LayerScene& scene, const Camera& camera,
 
 const SoftwareCatchers::Mask& SoftwareCatchers::mask_of(const PlanePatch& patch,
                                                         const PlannedCatcher& planned) {
-  const auto [place, is_new] = masks_.try_emplace(planned.hash);
+  ContentHash key;
+  key.add(planned.hash);
+  key.add(patch.edge_softness_m);
+  const auto [place, is_new] = masks_.try_emplace(key.value());
   Mask& mask = place->second;
   mask.used = true;
   if (!is_new) return mask;
   mask.region = outer_region(patch, planned.plan.frame);
-  mask.distance = distance_to_edge(patch, planned.plan.frame, mask.region, kMaskSide);
+  // Shadows fade within the softness; a few cells more, and blending between cells never meets what
+  // was not found.
+  constexpr float kMoreCells = 3.0F;
+  const glm::vec2 size = mask.region.size();
+  const float reach_m =
+      patch.edge_softness_m + kMoreCells * std::max(size.x, size.y) / static_cast<float>(kMaskSide);
+  mask.distance = distance_to_edge(patch, planned.plan.frame, mask.region, kMaskSide, reach_m);
   return mask;
 }
 
