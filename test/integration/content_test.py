@@ -153,10 +153,12 @@ class Places(unittest.TestCase):
 
     def test_anchored_points_keep_to_the_texture(self):
         figures = WORK / "tracks.json"
-        planecast("evaluate", "tracks", TABLETOP, "--reconstruction", RGBD, "--json", figures)
+        # On the table: the rug's pattern repeats, and a patch is found again a pattern away.
+        planecast("evaluate", "tracks", TABLETOP, "--reconstruction", RGBD, "--plane", "nearest",
+                  "--json", figures)
         result = json.loads(figures.read_text(encoding="utf-8"))
         self.assertGreaterEqual(result["points"], 10)
-        self.assertGreaterEqual(result["compared"], 200)
+        self.assertGreaterEqual(result["compared"], 1000)
         # Half of the 2 px asked at 640 x 480; single patches are mistaken for others, so no RMS.
         self.assertLess(result["error_px"]["p95"], 1.0)
 
