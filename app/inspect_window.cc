@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <memory>
 #include <opencv2/imgproc.hpp>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -77,7 +76,7 @@ class Input {
 
   /// To be called when a picture was drawn with the keys as they are.
   void picture_drawn() {
-    pressed_.clear();
+    pressed_ = false;
     for (const Key& key : std::exchange(let_go_, {})) pass_on(key);
   }
 
@@ -91,8 +90,8 @@ class Input {
 
   static void take_key(GLFWwindow* window, int key, int scancode, int action, int mods) {
     auto& input = *static_cast<Input*>(glfwGetWindowUserPointer(window));
-    if (action == GLFW_PRESS) input.pressed_.insert(key);
-    if (action == GLFW_RELEASE && input.pressed_.contains(key)) {
+    if (action == GLFW_PRESS) input.pressed_ = true;
+    if (action == GLFW_RELEASE && input.pressed_) {
       input.let_go_.push_back({key, scancode, action, mods});
     } else {
       input.pass_on({key, scancode, action, mods});
@@ -103,8 +102,8 @@ class Input {
   }
 
   GLFWwindow* window_;
-  std::set<int> pressed_;    ///< since the last picture
-  std::vector<Key> let_go_;  ///< of those
+  bool pressed_ = false;     ///< some key, since the last picture
+  std::vector<Key> let_go_;  ///< any, since then: Ctrl is still held where S is seen
 };
 
 void put_picture(GLFWwindow* window, const cv::Mat& bgr) {
