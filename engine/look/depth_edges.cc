@@ -114,10 +114,11 @@ void refine_region(const cv::Mat& depth, const cv::Mat& image, const cv::Rect& r
   const cv::Rect around = cv::Rect(inside.x - reach, inside.y - reach, inside.width + 2 * reach,
                                    inside.height + 2 * reach) &
                           whole;
-  const cv::Mat part = depth(around);
+  // A copy, for filters of a part look beyond it.
+  const cv::Mat part = depth(around).clone();
   cv::Mat band;
   const int side = 2 * options.band_px + 1;
-  cv::dilate(jumps(part.clone(), options.step_share), band, cv::Mat::ones(side, side, CV_8UC1));
+  cv::dilate(jumps(part, options.step_share), band, cv::Mat::ones(side, side, CV_8UC1));
   // The picture's noise must not vote.
   cv::Mat calm;
   cv::GaussianBlur(image(around), calm, cv::Size(3, 3), 0.8);

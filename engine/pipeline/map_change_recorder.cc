@@ -1,6 +1,7 @@
 #include "engine/pipeline/map_change_recorder.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 namespace planecast::engine {
@@ -15,7 +16,7 @@ std::vector<KnownPlane> known_planes(const slam::Map& map) {
 }
 
 /// Whether a map change did anything to what stands on the planes.
-bool changed(const std::vector<KnownPlane>& before, const MapChange& change) {
+bool changed(std::span<const KnownPlane> before, const MapChange& change) {
   const bool same_planes =
       std::ranges::equal(before, change.planes, [](const KnownPlane& a, const KnownPlane& b) {
         return a.id == b.id && a.world_from_plane.matrix() == b.world_from_plane.matrix();
@@ -33,8 +34,8 @@ void MapChangeRecorder::record(const slam::Map& map, int frame_index,
   change.frame_index = frame_index;
   change.planes = known_planes(map);
   change.new_from_old_world = new_from_old_world;
-  const std::vector<KnownPlane> before =
-      changes_.empty() ? std::vector<KnownPlane>{} : changes_.back().planes;
+  std::span<const KnownPlane> before;
+  if (!changes_.empty()) before = changes_.back().planes;
   if (!changed(before, change)) return;
   change.keyframes = take_moved_keyframes(map);
   changes_.push_back(std::move(change));

@@ -23,44 +23,42 @@ double chance_on(const PlaneMixture& mixture, double r, double reach) {
 }
 
 struct Expectation {
-  std::vector<double> chance;  ///< by place in `indices`
-  double within = 0.0;         ///< points in reach
+  double within = 0.0;  ///< points in reach
   double on = 0.0;
   double before = 0.0;
   double behind = 0.0;
   double square = 0.0;  ///< sum of chance r^2
 };
 
+double band_at(const PlanePoints& points, int i) {
+  return points.band.empty() ? 1.0 : points.band[static_cast<std::size_t>(i)];
+}
+
 double distance_over_band(const PlanePoints& points, const PlaneEquation& plane, int i) {
-  const double band = points.band.empty() ? 1.0 : points.band[static_cast<std::size_t>(i)];
-  return plane.signed_distance(points.positions[static_cast<std::size_t>(i)]) / band;
+  return plane.signed_distance(points.positions[static_cast<std::size_t>(i)]) / band_at(points, i);
 }
 
-void expect(const PlanePoints& points, const std::vector<int>& indices, const PlaneMixture& mixture,
-            double reach, Expectation& out) {
-  out = {std::move(out.chance)};
-  out.chance.assign(indices.size(), 0.0);
-  for (std::size_t k = 0; k < indices.size(); ++k) {
-    const double r = distance_over_band(points, mixture.plane, indices[k]);
-    if (std::abs(r) >= reach) continue;
+/// Also writes, at the points' own places, the weights of a fit: chances over squared bands.
+Expectation expect(const PlanePoints& points, const std::vector<int>& indices,
+                   const PlaneMixture& mixture, double reach, std::vector<double>& weights) {
+  Expectation result;
+  for (const int i : indices) {
+    const double r = distance_over_band(points, mixture.plane, i);
     const double chance = chance_on(mixture, r, reach);
-    out.chance[k] = chance;
-    out.within += 1.0;
-    out.on += chance;
-    out.square += chance * r * r;
-    (r > 0.0 ? out.before : out.behind) += 1.0 - chance;
+    const double band = band_at(points, i);
+    weights[static_cast<std::size_t>(i)] = chance / (band * band);
+    if (std::abs(r) >= reach) continue;
+    result.within += 1.0;
+    result.on += chance;
+    result.square += chance * r * r;
+    (r > 0.0 ? result.before : result.behind) += 1.0 - chance;
   }
+  return result;
 }
 
-/// The plane through the points weighted by their chance; false where they lie on a line.
+/// The plane through the weighted points; false where they lie on a line.
 bool refit(const PlanePoints& points, const std::vector<int>& indices,
-           const std::vector<double>& chance, PlaneEquation& plane) {
-  std::vector<double> weights(points.positions.size(), 0.0);
-  for (std::size_t k = 0; k < indices.size(); ++k) {
-    const auto i = static_cast<std::size_t>(indices[k]);
-    const double band = points.band.empty() ? 1.0 : points.band[i];
-    weights[i] = chance[k] / (band * band);
-  }
+           const std::vector<double>& weights, PlaneEquation& plane) {
   const auto fit = fit_plane(points.positions, indices, weights);
   if (!fit) return false;
   plane = fit->plane.normal.dot(plane.normal) < 0.0 ? fit->plane.flipped() : fit->plane;
@@ -91,11 +89,11 @@ std::optional<PlaneMixture> fit_plane_mixture(const PlanePoints& points,
                                               const PlaneMixtureOptions& options) {
   // Even odds, so that neither side is favoured by the start.
   PlaneMixture mixture{start, options.max_sigma, 0.5, 0.25, 0.25, 0.0};
-  Expectation expected;
+  std::vector<double> weights(points.positions.size(), 0.0);
   for (int k = 0; k < options.iterations; ++k) {
-    expect(points, indices, mixture, options.reach, expected);
+    const Expectation expected = expect(points, indices, mixture, options.reach, weights);
     if (expected.on < PlaneModel::kSampleSize) return std::nullopt;
-    if (!refit(points, indices, expected.chance, mixture.plane)) return std::nullopt;
+    if (!refit(points, indices, weights, mixture.plane)) return std::nullopt;
     mixture.sigma =
         std::clamp(std::sqrt(expected.square / expected.on), options.min_sigma, options.max_sigma);
     mixture.share = expected.on / expected.within;

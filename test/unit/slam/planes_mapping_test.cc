@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "planes_mapping_tools.h"
 #include "planes_world.h"
 #include "slam/geometry/plane_geometry.h"
 #include "slam/stages/map_planes.h"
@@ -15,146 +16,6 @@ namespace planecast::slam {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kPi = 3.14159265358979323846;
-
-/// Runs the plane steps at each keyframe as local mapping does.
-PlaneMappingStats map_planes(Map& map, const std::vector<KeyframeId>& keyframes,
-                             PlaneMapper& mapper) {
-  PlaneMappingStats stats;
-  for (const KeyframeId id : keyframes) {
-    mapper.cull_non_planar(map, id, stats);
-    mapper.update(map, id, stats);
-  }
-  return stats;
-}
-
-PlaneMapper mono_mapper(const PlaneMappingOptions& options = {}) {
-  return PlaneMapper(options, test_camera(), false);
-}
-
-double angle_deg(const Vector3d& a, const Vector3d& b) {
-  return std::acos(std::clamp(a.dot(b), -1.0, 1.0)) * 180.0 / kPi;
-}
-
-/// Planes of the map within 5 degrees and `tolerance` of the patch at `centre` with unit normal
-/// `normal`.
-int count_matching(const Map& map, const Vector3d& normal, const Vector3d& centre,
-                   double tolerance) {
-  int count = 0;
-  for (const Plane& plane : map.planes) {
-    count += angle_deg(plane.normal, normal) < 5.0 &&
-             std::abs(plane.signed_distance(centre)) < tolerance;
-  }
-  return count;
-}
-
-void add_all(MapBuilder& builder, const std::vector<Vector3d>& points,
-             const std::vector<KeyframeId>& observers, int label) {
-  for (const Vector3d& p : points) builder.add_landmark(p, observers, label);
-}
-
-/// Two cameras side by side at the origin that look ahead and a little down.
-std::vector<KeyframeId> add_pair(MapBuilder& builder, const Vector3d& centre,
-                                 const Vector3d& target) {
-  return {builder.add_keyframe(look_at(centre, target)),
-          builder.add_keyframe(look_at(centre + Vector3d(0.1, 0, 0), target))};
-}
-
-const Vector3d kUp(0, -1, 0);
-
-class TwoTables : public ::testing::TestWithParam<bool> {};
-
-TEST_P(TwoTables, OfOneHeightStayTwo) {
-  auto generator = test_generator();
-  MapBuilder builder(test_camera());
-  const auto views = add_pair(builder, {0, 0, 0}, {0, 0.5, 2.0});
-  const bool masks = GetParam();
-  add_all(builder, strew(generator, 120, {-1.0, 0.6, 1.6}, {0.7, 0, 0}, {0, 0, 0.6}, 0.004), views,
-          masks ? 1 : 0);
-  add_all(builder, strew(generator, 120, {0.3, 0.6, 1.6}, {0.7, 0, 0}, {0, 0, 0.6}, 0.004), views,
-          masks ? 2 : 0);
-  Map map = builder.build();
-  PlaneMapper mapper = mono_mapper();
-  map_planes(map, {0, 1, 1}, mapper);
-  ASSERT_EQ(map.planes.size(), 2U);
-  EXPECT_EQ(count_matching(map, kUp, {0, 0.6, 1.9}, 0.01), 2);
-  for (const Plane& plane : map.planes) EXPECT_GT(plane.inliers, 110);
-}
-
-INSTANTIATE_TEST_SUITE_P(Masks, TwoTables, ::testing::Bool());
-
-class Stairs : public ::testing::TestWithParam<bool> {};
-
-TEST_P(Stairs, KeepTheirSteps) {
-  auto generator = test_generator();
-  MapBuilder builder(test_camera());
-  const auto views = add_pair(builder, {0, -0.4, 0}, {0, 0.4, 1.8});
-  for (int step = 0; step < 4; ++step) {
-    const double y = 0.8 - 0.17 * step;
-    const double z = 1.2 + 0.28 * step;
-    add_all(builder, strew(generator, 90, {-0.5, y, z}, {1, 0, 0}, {0, 0, 0.28}, 0.003), views,
-            GetParam() ? 1 + step : 0);
-  }
-  Map map = builder.build();
-  PlaneMapper mapper = mono_mapper();
-  map_planes(map, {0, 1, 1}, mapper);
-  EXPECT_EQ(map.planes.size(), 4U);
-  for (int step = 0; step < 4; ++step) {
-    EXPECT_EQ(count_matching(map, kUp, {0, 0.8 - 0.17 * step, 1.34 + 0.28 * step}, 0.01), 1)
-        << step;
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(Masks, Stairs, ::testing::Bool());
-
-TEST(PlaneMapper, FacesOfAThinPartitionStaySeparate) {
-  auto generator = test_generator();
-  MapBuilder builder(test_camera());
-  const auto front = add_pair(builder, {0, 0, 0}, {0, 0, 2});
-  const auto back = add_pair(builder, {0, 0, 4.02}, {0, 0, 2});
-  // Two centimetres apart: half of eps_d at this distance.
-  add_all(builder, strew(generator, 150, {-0.6, -0.5, 2.0}, {1.2, 0, 0}, {0, 1, 0}, 0.004), front,
-          1);
-  add_all(builder, strew(generator, 150, {-0.6, -0.5, 2.02}, {1.2, 0, 0}, {0, 1, 0}, 0.004), back,
-          1);
-  Map map = builder.build();
-  PlaneMapper mapper = mono_mapper();
-  map_planes(map, {0, 1, 2, 3, 3}, mapper);
-  ASSERT_EQ(map.planes.size(), 2U);
-  EXPECT_EQ(count_matching(map, -Vector3d::UnitZ(), {0, 0, 2.0}, 0.005), 1);
-  EXPECT_EQ(count_matching(map, Vector3d::UnitZ(), {0, 0, 2.02}, 0.005), 1);
-}
-
-TEST(PlaneMapper, OneWallSeenFromTwoEndsMergesAndItsIdSurvives) {
-  auto generator = test_generator();
-  MapBuilder builder(test_camera());
-  const auto left = add_pair(builder, {-2, 0, 0}, {-2, 0, 2});
-  const auto right = add_pair(builder, {2, 0, 0}, {2, 0, 2});
-  const auto middle = add_pair(builder, {0, 0, 0}, {0, 0, 2});
-  const auto strip = [&](double from, double to, int count) {
-    return strew(generator, count, {from, -0.5, 2.0}, {to - from, 0, 0}, {0, 1, 0}, 0.005);
-  };
-  add_all(builder, strip(-2.6, -1.0, 150), left, 1);
-  add_all(builder, strip(1.0, 2.6, 150), right, 7);
-  add_all(builder, strip(-1.0, 1.0, 200), middle, 3);
-  Map map = builder.build();
-  PlaneMapper mapper = mono_mapper();
-  map_planes(map, {0, 1}, mapper);
-  ASSERT_EQ(map.planes.size(), 1U);
-  const Vector3d origin = map.planes.at(0).origin;
-  map_planes(map, {2, 3}, mapper);
-  EXPECT_EQ(map.planes.size(), 2U);
-  map_planes(map, {4, 5}, mapper);
-  ASSERT_EQ(map.planes.size(), 1U);
-  ASSERT_TRUE(map.planes.contains(0));
-  const Plane& wall = map.planes.at(0);
-  EXPECT_GE(wall.merged_from.size(), 1U);
-  EXPECT_GT(wall.inliers, 450);
-  // The frame stayed at the first end; it moved along the normal only.
-  EXPECT_LT((wall.origin - origin).head<2>().norm(), 0.005);
-  EXPECT_EQ(static_cast<int>(map.landmarks_of(0).size()), wall.inliers);
-}
 
 /// A wall of 100 landmarks with masks; more landmarks can be added before build().
 struct Wall {
@@ -376,24 +237,6 @@ TEST(PlaneMapper, WeakPlanesThatDoNotGrowAreDropped) {
   }
   EXPECT_EQ(stats.dropped, 1);
   EXPECT_FALSE(map.planes.contains(0));
-}
-
-TEST(PlaneMapper, PaperMergingJoinsWhatTheDefaultKeepsApart) {
-  auto generator = test_generator();
-  MapBuilder builder(test_camera());
-  const auto views = add_pair(builder, {0, -0.4, 0}, {0, 0.4, 1.8});
-  for (int step = 0; step < 2; ++step) {
-    add_all(builder,
-            strew(generator, 90, {-0.5, 0.8 - 0.17 * step, 1.2 + 0.28 * step}, {1, 0, 0},
-                  {0, 0, 0.28}, 0.003),
-            views, 1 + step);
-  }
-  Map map = builder.build();
-  PlaneMappingOptions options;
-  options.merge = PlaneMerge::kPaper;
-  PlaneMapper mapper = mono_mapper(options);
-  map_planes(map, {0}, mapper);
-  EXPECT_EQ(map.planes.size(), 1U);
 }
 
 TEST(PlaneMapper, RgbdFindsAPlaneWithoutTexture) {
