@@ -41,8 +41,28 @@ class GraphCut {
 
  private:
   struct Graph;
+  struct Edge {
+    int a = 0;
+    int b = 0;
+    long long weight = 0;
+  };
+  /// Fills terminal_, pull_ and edges_.
+  void set_costs(const std::vector<double>& kernel, const std::vector<NeighbourPair>& neighbours,
+                 const PairOptions& options);
+  /// Labels what every minimum labels alike: a point whose own cost outweighs all its pairs
+  /// together, then those that follow from it. Most points are such, and no flow is needed for
+  /// them. Leaves the others in open_ and the pairs among them in edges_.
+  void settle(std::vector<char>& inlier);
+  /// Labels what is open by the maximum flow.
+  void cut(std::vector<char>& inlier);
+
   std::unique_ptr<Graph> graph_;
-  std::vector<long long> terminal_;
+  std::vector<long long> terminal_;  ///< cost of the label inlier less that of outlier
+  std::vector<long long> pull_;      ///< sum of the weights of a point's edges
+  std::vector<Edge> edges_;
+  std::vector<int> open_;
+  std::vector<char> is_open_;
+  std::vector<int> vertex_;  ///< of the flow graph, per point
 };
 
 /// The energy of a labelling, as defined above; for tests and reports.

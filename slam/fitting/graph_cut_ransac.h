@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "slam/fitting/graph_cut.h"
+#include "slam/fitting/kernel.h"
 #include "slam/fitting/neighbourhood.h"
 #include "slam/geometry/random.h"
 
@@ -85,7 +86,10 @@ class GraphCutRansac {
         pairs_{options.lambda *
                    std::min(1.0, n_ / std::max(1.0, static_cast<double>(neighbours.size()))),
                options.pairs_by_contrast},
+        kernel_options_{options.threshold, kSupportReach, options.background_cost,
+                        kBackgroundReach},
         kernel_(static_cast<std::size_t>(n_)),
+        squared_(static_cast<std::size_t>(n_)),
         label_(static_cast<std::size_t>(n_)) {
     candidates_.reserve(kernel_.size());
     subset_.reserve(kernel_.size());
@@ -121,17 +125,6 @@ class GraphCutRansac {
   /// Share of the score that the final least squares may cost.
   static constexpr double kScoreKept = 0.99;
 
-  double kernel_of(double squared_residual) const {
-    return std::exp(-0.5 * squared_residual / (options_.threshold * options_.threshold));
-  }
-  bool in_reach(double squared_residual) const {
-    return squared_residual <
-           kSupportReach * kSupportReach * options_.threshold * options_.threshold;
-  }
-  bool is_close(double squared_residual) const {
-    return squared_residual < options_.threshold * options_.threshold;
-  }
-
   struct Support {
     double score = -1.0;
     int inliers = 0;
@@ -142,21 +135,13 @@ class GraphCutRansac {
   Support support_of(const Parameters& model, double to_beat) const {
     std::array<double, kBlock> squared;
     Support support{0.0, 0};
-    const double reach = options_.background_cost > 0.0 ? kBackgroundReach : kSupportReach;
-    const double far = reach * reach * options_.threshold * options_.threshold;
     for (int begin = 0; begin < n_; begin += kBlock) {
       const int end = std::min(begin + kBlock, n_);
       if (support.score + (n_ - begin) <= to_beat) return {};
       model_.squared_residuals(model, begin, end, squared.data());
-      for (int i = 0; i < end - begin; ++i) {
-        if (squared[i] >= far) continue;
-        if (in_reach(squared[i])) support.score += kernel_of(squared[i]);
-        if (is_close(squared[i])) {
-          ++support.inliers;
-        } else {
-          support.score -= options_.background_cost;
-        }
-      }
+      const KernelSum sum = sum_kernels(squared.data(), end - begin, kernel_options_);
+      support.score += sum.score;
+      support.inliers += sum.inliers;
     }
     return support;
   }
@@ -224,13 +209,11 @@ class GraphCutRansac {
   /// Labels all points and collects in candidates_ those labelled inlier within `reach` thresholds:
   /// the cut alone would also keep gross outliers that lie amid inliers.
   void label_by_cut(const Parameters& model, double reach, Result& result) {
-    squared_.resize(kernel_.size());
     model_.squared_residuals(model, 0, n_, squared_.data());
     const double limit = reach * reach * options_.threshold * options_.threshold;
     if (options_.graph_cut) {
       ++result.cuts;
-      for (int i = 0; i < n_; ++i)
-        kernel_[i] = in_reach(squared_[i]) ? kernel_of(squared_[i]) : 0.0;
+      kernels(squared_.data(), n_, kernel_options_, kernel_.data());
       cut_.label(kernel_, neighbours_, pairs_, label_);
     } else {
       std::fill(label_.begin(), label_.end(), 1);
@@ -294,6 +277,7 @@ class GraphCutRansac {
   Random random_;
   int n_;
   PairOptions pairs_;
+  KernelOptions kernel_options_;
   Parameters best_{};
   double best_score_ = 0.0;
   double best_sample_score_ = 0.0;  ///< before any optimisation

@@ -2,7 +2,10 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
+
+#include "slam/data/vector_clones.h"
 
 namespace planecast::slam {
 
@@ -115,6 +118,18 @@ Vector9d smallest_eigenvector(Matrix9d m) {
 
 }  // namespace
 
+HomographyModel::HomographyModel(const std::vector<PointPair>& pairs) : pairs_(pairs) {
+  for (std::vector<double>* column : {&ref_x_, &ref_y_, &cur_x_, &cur_y_}) {
+    column->reserve(pairs.size());
+  }
+  for (const PointPair& pair : pairs) {
+    ref_x_.push_back(pair.ref.x());
+    ref_y_.push_back(pair.ref.y());
+    cur_x_.push_back(pair.cur.x());
+    cur_y_.push_back(pair.cur.y());
+  }
+}
+
 bool HomographyModel::fit_minimal(const int* sample, Parameters& model) const {
   const PointPair& a = pairs_[sample[0]];
   const PointPair& b = pairs_[sample[1]];
@@ -151,24 +166,31 @@ bool HomographyModel::fit_least_squares(const std::vector<int>& points, Paramete
   return true;
 }
 
+PLANECAST_VECTOR_CLONES
 void HomographyModel::squared_residuals(const Parameters& model, int begin, int end,
                                         double* out) const {
-  const Matrix3d& h = model.cur_H_ref;
-  const Matrix3d& g = model.ref_H_cur;
-  for (int i = begin; i < end; ++i) {
-    const double x = pairs_[i].ref.x();
-    const double y = pairs_[i].ref.y();
-    const double u = pairs_[i].cur.x();
-    const double v = pairs_[i].cur.y();
+  const Matrix3d h = model.cur_H_ref;
+  const Matrix3d g = model.ref_H_cur;
+  const double* const ref_x = ref_x_.data() + begin;
+  const double* const ref_y = ref_y_.data() + begin;
+  const double* const cur_x = cur_x_.data() + begin;
+  const double* const cur_y = cur_y_.data() + begin;
+  for (int i = 0; i < end - begin; ++i) {
+    const double x = ref_x[i];
+    const double y = ref_y[i];
+    const double u = cur_x[i];
+    const double v = cur_y[i];
     const double forward_w = h(2, 0) * x + h(2, 1) * y + h(2, 2);
     const double backward_w = g(2, 0) * u + g(2, 1) * v + g(2, 2);
-    const double forward_x = (h(0, 0) * x + h(0, 1) * y + h(0, 2)) / forward_w - u;
-    const double forward_y = (h(1, 0) * x + h(1, 1) * y + h(1, 2)) / forward_w - v;
-    const double backward_x = (g(0, 0) * u + g(0, 1) * v + g(0, 2)) / backward_w - x;
-    const double backward_y = (g(1, 0) * u + g(1, 1) * v + g(1, 2)) / backward_w - y;
+    const double per_forward_w = 1.0 / forward_w;
+    const double per_backward_w = 1.0 / backward_w;
+    const double forward_x = (h(0, 0) * x + h(0, 1) * y + h(0, 2)) * per_forward_w - u;
+    const double forward_y = (h(1, 0) * x + h(1, 1) * y + h(1, 2)) * per_forward_w - v;
+    const double backward_x = (g(0, 0) * u + g(0, 1) * v + g(0, 2)) * per_backward_w - x;
+    const double backward_y = (g(1, 0) * u + g(1, 1) * v + g(1, 2)) * per_backward_w - y;
     const double squared = 0.5 * (forward_x * forward_x + forward_y * forward_y +
                                   backward_x * backward_x + backward_y * backward_y);
-    *out++ = forward_w > 0.0 && backward_w > 0.0 ? squared : HUGE_VAL;
+    out[i] = std::min(forward_w, backward_w) > 0.0 ? squared : HUGE_VAL;
   }
 }
 

@@ -18,7 +18,7 @@ class HomographyModel {
   };
   static constexpr int kSampleSize = 4;
 
-  explicit HomographyModel(const std::vector<PointPair>& pairs) : pairs_(pairs) {}
+  explicit HomographyModel(const std::vector<PointPair>& pairs);
   int size() const { return static_cast<int>(pairs_.size()); }
   /// Exact, over the projective basis of the four points. Refuses three points near a line and
   /// samples that no plane seen from one side explains: every triple must turn the same way in both
@@ -31,6 +31,8 @@ class HomographyModel {
 
  private:
   const std::vector<PointPair>& pairs_;
+  /// The same by columns, for whole vectors at a time.
+  std::vector<double> ref_x_, ref_y_, cur_x_, cur_y_;
 };
 
 }  // namespace planecast::slam

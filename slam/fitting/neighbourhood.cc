@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
+#include <utility>
 
 namespace planecast::slam {
 
@@ -118,13 +120,22 @@ std::vector<NeighbourPair> image_grid_neighbours(const std::vector<PointPair>& p
 }
 
 void sort_unique(std::vector<NeighbourPair>& pairs) {
-  const auto key = [](const NeighbourPair& pair) { return std::pair(pair.a, pair.b); };
-  std::sort(pairs.begin(), pairs.end(),
-            [&](const NeighbourPair& a, const NeighbourPair& b) { return key(a) < key(b); });
-  pairs.erase(
-      std::unique(pairs.begin(), pairs.end(),
-                  [&](const NeighbourPair& a, const NeighbourPair& b) { return key(a) == key(b); }),
-      pairs.end());
+  int n = 0;
+  for (const NeighbourPair& pair : pairs) n = std::max(n, pair.b + 1);
+  // Twice by counting, the second point first: points are many and pairs few per point.
+  std::vector<NeighbourPair> sorted(pairs.size());
+  std::vector<int> next(static_cast<std::size_t>(n) + 1);
+  for (int NeighbourPair::*const key : {&NeighbourPair::b, &NeighbourPair::a}) {
+    std::fill(next.begin(), next.end(), 0);
+    for (const NeighbourPair& pair : pairs) ++next[pair.*key + 1];
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    for (const NeighbourPair& pair : pairs) sorted[next[pair.*key]++] = pair;
+    pairs.swap(sorted);
+  }
+  const auto is_same = [](const NeighbourPair& p, const NeighbourPair& q) {
+    return p.a == q.a && p.b == q.b;
+  };
+  pairs.erase(std::unique(pairs.begin(), pairs.end(), is_same), pairs.end());
 }
 
 }  // namespace planecast::slam

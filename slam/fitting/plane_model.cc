@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "slam/data/vector_clones.h"
+
 namespace planecast::slam {
 
 namespace {
@@ -15,6 +17,20 @@ constexpr double kMinSine = 0.05;
 PlaneModel::PlaneModel(const PlanePoints& points) : points_(points) {
   weights_.reserve(points.band.size());
   for (const double band : points.band) weights_.push_back(1.0 / (band * band));
+  for (std::vector<double>* column : {&x_, &y_, &z_}) column->reserve(points.positions.size());
+  for (const Eigen::Vector3d& p : points.positions) {
+    x_.push_back(p.x());
+    y_.push_back(p.y());
+    z_.push_back(p.z());
+  }
+  for (std::vector<double>* column : {&view_x_, &view_y_, &view_z_}) {
+    column->reserve(points.view_from.size());
+  }
+  for (const Eigen::Vector3d& v : points.view_from) {
+    view_x_.push_back(v.x());
+    view_y_.push_back(v.y());
+    view_z_.push_back(v.z());
+  }
 }
 
 bool PlaneModel::fit_minimal(const int* sample, Parameters& model) const {
@@ -48,13 +64,31 @@ bool PlaneModel::fit_least_squares(const std::vector<int>& points, Parameters& m
   return true;
 }
 
+PLANECAST_VECTOR_CLONES
 void PlaneModel::squared_residuals(const Parameters& model, int begin, int end, double* out) const {
-  for (int i = begin; i < end; ++i) {
-    const double distance = model.signed_distance(points_.positions[i]);
-    double squared = distance * distance;
-    if (!weights_.empty()) squared *= weights_[i];
-    const bool behind = !points_.view_from.empty() && points_.view_from[i].dot(model.normal) <= 0.0;
-    *out++ = behind ? HUGE_VAL : squared;
+  const double a = model.normal.x();
+  const double b = model.normal.y();
+  const double c = model.normal.z();
+  const double d = model.offset;
+  const int n = end - begin;
+  const double* const x = x_.data() + begin;
+  const double* const y = y_.data() + begin;
+  const double* const z = z_.data() + begin;
+  for (int i = 0; i < n; ++i) {
+    const double distance = a * x[i] + b * y[i] + c * z[i] + d;
+    out[i] = distance * distance;
+  }
+  if (!weights_.empty()) {
+    const double* const weight = weights_.data() + begin;
+    for (int i = 0; i < n; ++i) out[i] *= weight[i];
+  }
+  if (points_.view_from.empty()) return;
+  const double* const view_x = view_x_.data() + begin;
+  const double* const view_y = view_y_.data() + begin;
+  const double* const view_z = view_z_.data() + begin;
+  for (int i = 0; i < n; ++i) {
+    const double facing = a * view_x[i] + b * view_y[i] + c * view_z[i];
+    out[i] = facing <= 0.0 ? HUGE_VAL : out[i];
   }
 }
 

@@ -37,6 +37,8 @@ class PlaneModel {
  private:
   const PlanePoints& points_;
   std::vector<double> weights_;  ///< 1 / band^2; empty: all 1
+  /// Positions and directions by columns, for whole vectors at a time.
+  std::vector<double> x_, y_, z_, view_x_, view_y_, view_z_;
 };
 
 }  // namespace planecast::slam

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
+#include <cstdint>
 
 namespace planecast::slam {
 
@@ -53,39 +53,45 @@ ProgressiveNapsacSampler::ProgressiveNapsacSampler(const std::vector<PointPair>&
     : n_(static_cast<int>(pairs.size())),
       sample_size_(sample_size),
       global_(n_, sample_size),
+      pairs_(pairs),
+      width_(width),
+      height_(height),
+      layers_(kGrids.size()),
       hits_(pairs.size(), 0),
       neighbours_(pairs.size(), sample_size - 1),
-      layer_(pairs.size(), 0) {
-  layers_.reserve(kGrids.size());
-  for (const int cells : kGrids) layers_.push_back(build_layer(pairs, width, height, cells));
+      layer_(pairs.size(), 0) {}
+
+const ProgressiveNapsacSampler::Layer& ProgressiveNapsacSampler::layer(int index) {
+  Layer& layer = layers_[index];
+  if (layer.items.empty()) layer = build_layer(kGrids[index]);
+  return layer;
 }
 
-ProgressiveNapsacSampler::Layer ProgressiveNapsacSampler::build_layer(
-    const std::vector<PointPair>& pairs, int width, int height, int cells) {
+ProgressiveNapsacSampler::Layer ProgressiveNapsacSampler::build_layer(int cells) const {
   const auto coordinate = [cells](double value, int size) {
     return std::clamp(static_cast<int>(std::floor(value * cells / size)), 0, cells - 1);
   };
-  std::vector<int> cell(pairs.size());
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const auto& [ref, cur] = pairs[i];
-    cell[i] = ((coordinate(ref.x(), width) * cells + coordinate(ref.y(), height)) * cells +
-               coordinate(cur.x(), width)) *
-                  cells +
-              coordinate(cur.y(), height);
+  // (cell, point) in one number, so that sorting is by cell and then by quality.
+  std::vector<std::uint64_t> keys(pairs_.size());
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const auto& [ref, cur] = pairs_[i];
+    const int cell = ((coordinate(ref.x(), width_) * cells + coordinate(ref.y(), height_)) * cells +
+                      coordinate(cur.x(), width_)) *
+                         cells +
+                     coordinate(cur.y(), height_);
+    keys[i] = static_cast<std::uint64_t>(cell) << 32 | i;
   }
+  std::sort(keys.begin(), keys.end());
   Layer layer;
-  layer.items.resize(pairs.size());
-  layer.begin.resize(pairs.size());
-  layer.size.resize(pairs.size());
-  std::iota(layer.items.begin(), layer.items.end(), 0);
-  std::sort(layer.items.begin(), layer.items.end(),
-            [&](int a, int b) { return cell[a] != cell[b] ? cell[a] < cell[b] : a < b; });
-  const int n = static_cast<int>(pairs.size());
-  for (int first = 0, last = 0; first < n; first = last) {
-    while (last < n && cell[layer.items[last]] == cell[layer.items[first]]) ++last;
-    for (int i = first; i < last; ++i) {
-      layer.begin[layer.items[i]] = first;
-      layer.size[layer.items[i]] = last - first;
+  layer.items.resize(keys.size());
+  layer.begin.resize(keys.size());
+  layer.size.resize(keys.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) layer.items[i] = static_cast<int>(keys[i]);
+  for (std::size_t first = 0, last = 0; first < keys.size(); first = last) {
+    while (last < keys.size() && keys[last] >> 32 == keys[first] >> 32) ++last;
+    for (std::size_t i = first; i < last; ++i) {
+      layer.begin[layer.items[i]] = static_cast<int>(first);
+      layer.size[layer.items[i]] = static_cast<int>(last - first);
     }
   }
   return layer;
@@ -102,12 +108,12 @@ bool ProgressiveNapsacSampler::draw_local(Random& random, int centre, int* sampl
   while (neighbours < n_ - 1 && hits > global_.growth()[neighbours + 1]) ++neighbours;
   int& layer_index = layer_[centre];
   while (layer_index < static_cast<int>(layers_.size()) &&
-         layers_[layer_index].size[centre] - 1 < neighbours) {
+         layer(layer_index).size[centre] - 1 < neighbours) {
     ++layer_index;
   }
   if (layer_index == static_cast<int>(layers_.size())) return false;
-  const Layer& layer = layers_[layer_index];
-  const int* cell = &layer.items[layer.begin[centre]];
+  const Layer& grid = layer(layer_index);
+  const int* cell = &grid.items[grid.begin[centre]];
   // Positions in the cell, with the centre left out: the newest neighbour and some better ones.
   const int rest = sample_size_ - 2;
   random.distinct(rest, neighbours - 1, sample);

@@ -37,7 +37,8 @@ class ProsacSampler {
 
 /// Progressive NAPSAC (Barath et al., arXiv 1906.02295): samples are first local, from one grid
 /// cell of both images, finest grid first; each point's neighbourhood grows with the times it was
-/// the centre and ends as all points, that is as PROSAC. Matches are sorted by quality, best first.
+/// the centre and ends as all points, that is as PROSAC. Matches are sorted by quality, best first,
+/// and kept by reference.
 class ProgressiveNapsacSampler {
  public:
   ProgressiveNapsacSampler(const std::vector<PointPair>& pairs, int width, int height,
@@ -51,7 +52,9 @@ class ProgressiveNapsacSampler {
     std::vector<int> begin;  ///< per point: its cell's first position in items
     std::vector<int> size;   ///< per point: its cell's number of points
   };
-  static Layer build_layer(const std::vector<PointPair>& pairs, int width, int height, int cells);
+  Layer build_layer(int cells) const;
+  /// Builds it when it is first asked for: the coarse ones often are not needed at all.
+  const Layer& layer(int index);
   bool draw_local(Random& random, int centre, int* sample);
   int draw_centre(Random& random);
 
@@ -59,6 +62,9 @@ class ProgressiveNapsacSampler {
   int sample_size_;
   int draws_ = 0;
   ProsacSampler global_;
+  const std::vector<PointPair>& pairs_;
+  int width_;
+  int height_;
   std::vector<Layer> layers_;
   std::vector<int> hits_;        ///< per point: times it was the centre
   std::vector<int> neighbours_;  ///< per point: size of its neighbourhood, without itself

@@ -13,7 +13,7 @@ namespace planecast::slam {
 
 /// Runs the plane steps at each keyframe as local mapping does.
 inline PlaneMappingStats map_planes(Map& map, const std::vector<KeyframeId>& keyframes,
-                             PlaneMapper& mapper) {
+                                    PlaneMapper& mapper) {
   PlaneMappingStats stats;
   for (const KeyframeId id : keyframes) {
     mapper.cull_non_planar(map, id, stats);
@@ -32,8 +32,8 @@ inline double angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 /// Planes of the map within 5 degrees and `tolerance` of the patch at `centre` with unit normal
 /// `normal`.
-inline int count_matching(const Map& map, const Eigen::Vector3d& normal, const Eigen::Vector3d& centre,
-                   double tolerance) {
+inline int count_matching(const Map& map, const Eigen::Vector3d& normal,
+                          const Eigen::Vector3d& centre, double tolerance) {
   int count = 0;
   for (const Plane& plane : map.planes) {
     count += angle_deg(plane.normal, normal) < 5.0 &&
@@ -43,13 +43,13 @@ inline int count_matching(const Map& map, const Eigen::Vector3d& normal, const E
 }
 
 inline void add_all(MapBuilder& builder, const std::vector<Eigen::Vector3d>& points,
-             const std::vector<KeyframeId>& observers, int label) {
+                    const std::vector<KeyframeId>& observers, int label) {
   for (const Eigen::Vector3d& p : points) builder.add_landmark(p, observers, label);
 }
 
 /// Two cameras side by side at the origin that look ahead and a little down.
 inline std::vector<KeyframeId> add_pair(MapBuilder& builder, const Eigen::Vector3d& centre,
-                                 const Eigen::Vector3d& target) {
+                                        const Eigen::Vector3d& target) {
   return {builder.add_keyframe(look_at(centre, target)),
           builder.add_keyframe(look_at(centre + Eigen::Vector3d(0.1, 0, 0), target))};
 }
