@@ -8,10 +8,13 @@
 namespace planecast::engine {
 
 struct VideoOptions {
-  int crf = 18;                     ///< x264's constant rate factor: visually lossless
-  std::string preset = "veryfast";  ///< of x264
-  int segment_frames = 60;          ///< frames of an independent segment
-  bool resume = false;              ///< keep the complete segments of an earlier, killed run
+  /// x264's constant rate factor and preset: visually lossless, as close to the pictures as
+  /// `veryfast` at 18 (42.1 dB on a real room) in little more than half of its time, a fifth
+  /// larger.
+  int crf = 20;
+  std::string preset = "superfast";
+  int segment_frames = 60;  ///< frames of an independent segment
+  bool resume = false;      ///< keep the complete segments of an earlier, killed run
   /// What the pictures depend on beside these options (scene, range, ...): segments of an earlier
   /// run with another key are not resumed.
   std::string content_key;

@@ -250,6 +250,7 @@ MipTexture::MipTexture(const ImageU8& image, const Options& options) : texels_(n
   ImageU8 level = with_four_channels(image);
   const int count =
       is_mipmapped(options.min_filter) ? mip_level_count(image.width, image.height) : 1;
+  reserve(image, count, options.decode);
   for (int i = 0; i < count; ++i) {
     add_level(level, options.decode);
     level = halved(level, options.colors);
@@ -258,6 +259,8 @@ MipTexture::MipTexture(const ImageU8& image, const Options& options) : texels_(n
 
 MipTexture::MipTexture(const std::vector<ImageU8>& levels, const Options& options)
     : texels_(no_levels(options)) {
+  if (levels.empty()) return;
+  reserve(levels.front(), static_cast<int>(levels.size()), options.decode);
   for (const ImageU8& level : levels) add_level(level, options.decode);
 }
 
@@ -272,20 +275,34 @@ void MipTexture::add_level(const ImageU8& image, bool decode) {
   const auto width = static_cast<std::size_t>(image.width);
   const auto height = static_cast<std::size_t>(image.height);
   const std::size_t follows = texels_.wrap_s == GL_REPEAT ? 0 : width - 1;
+  const std::size_t after = before + (width + 1) * height;
+  decode ? texels_.floats.resize(after) : texels_.bytes.resize(after);
   const SrgbTables& tables = SrgbTables::get();
   for (std::size_t y = 0; y < height; ++y) {
-    for (std::size_t x = 0; x <= width; ++x) {
-      const std::uint8_t* rgba = &image.pixels[4 * (y * width + (x < width ? x : follows))];
-      if (decode) {
-        texels_.floats.emplace_back(tables.linear(rgba[0]), tables.linear(rgba[1]),
-                                    tables.linear(rgba[2]), static_cast<float>(rgba[3]) / 255.0F);
-      } else {
-        std::uint32_t texel = 0;
-        std::memcpy(&texel, rgba, sizeof(texel));
-        texels_.bytes.push_back(texel);
+    const std::uint8_t* row = &image.pixels[4 * y * width];
+    const std::size_t first = before + y * (width + 1);
+    if (decode) {
+      glm::vec4* out = &texels_.floats[first];
+      for (std::size_t x = 0; x < width; ++x) {
+        const std::uint8_t* rgba = row + 4 * x;
+        out[x] = {tables.linear(rgba[0]), tables.linear(rgba[1]), tables.linear(rgba[2]),
+                  static_cast<float>(rgba[3]) / 255.0F};
       }
+      out[width] = out[follows];
+    } else {
+      std::memcpy(&texels_.bytes[first], row, 4 * width);
+      texels_.bytes[first + width] = texels_.bytes[first + follows];
     }
   }
+}
+
+void MipTexture::reserve(const ImageU8& image, int levels, bool decode) {
+  std::size_t texels = 0;
+  for (int i = 0; i < levels; ++i) {
+    texels += static_cast<std::size_t>(std::max(image.width >> i, 1) + 1) *
+              static_cast<std::size_t>(std::max(image.height >> i, 1));
+  }
+  decode ? texels_.floats.reserve(texels) : texels_.bytes.reserve(texels);
 }
 
 void MipTexture::read(TextureReads& reads) const {

@@ -69,6 +69,8 @@ class MipTexture {
   glm::vec3 sample(glm::vec2 uv, float level) const;
 
  private:
+  /// Memory for `levels` levels, of which `image` is the first.
+  void reserve(const ImageU8& image, int levels, bool decode);
   void add_level(const ImageU8& image, bool decode);
 
   TexelLevels texels_;
