@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <utility>
 
 #include "slam/fitting/graph_cut_ransac.h"
 #include "slam/fitting/neighbourhood.h"
@@ -10,6 +11,7 @@
 #include "slam/fitting/plane_model.h"
 #include "slam/fitting/samplers.h"
 #include "slam/fitting/sequential.h"
+#include "slam/stages/plane_directions.h"
 #include "slam/stages/plane_plausibility.h"
 #include "slam/stages/plane_steps.h"
 
@@ -26,6 +28,9 @@ constexpr double kMinMaskRatio = 0.3;  ///< of a mask group's points that must b
 constexpr double kBackgroundCost = 0.5;
 constexpr int kMaxModelsWithoutMasks = 8;
 constexpr int kMaxModelsPerMask = 3;
+/// [D] Of all points of a mask, that a plane in it must hold. Fewer are what leaked in: they are on
+/// what adjoins, which has a mask of its own or is no plane.
+constexpr double kMinShareOfMask = 0.25;
 /// Implausible fits after which nothing better is expected: fits come in order of their score.
 constexpr int kMaxImplausible = 2;
 constexpr int kMaxSamples = 500;
@@ -85,64 +90,114 @@ class PlaneFinder {
   }
 
   int find_in_masks() {
-    std::vector<int> labels = shown_.label;
-    for (int i = 0; i < shown_.size(); ++i) {
-      if (shown_.plane[i] != kNone) labels[i] = 0;
-    }
+    std::vector<MaskGroup> groups = groups_in_masks();
     int found = 0;
-    for (const std::vector<int>& group : groups_by_label(labels, context_.options.min_inliers)) {
-      // A mask may cover more than one plane: what the first leaves is tried again.
-      fit_sequentially(
-          group, context_.options.min_inliers, kMaxModelsPerMask,
-          [&](const std::vector<int>& left) {
-            auto candidate = fit(left, context_.scale.eps_d, kMinMaskRatio);
-            if (!candidate || !tighten(left, *candidate)) return std::vector<int>();
-            std::vector<int> consumed = near(left, *candidate, context_.scale.eps_d);
-            keep_connected(shown_, context_.scale, *candidate);
-            if (static_cast<int>(candidate->inliers.size()) < context_.options.min_inliers ||
-                !is_plausible(*candidate)) {
-              return std::vector<int>();
-            }
-            add_plane(*candidate, shown_.label[group.front()]);
-            ++found;
-            return consumed;
-          });
+    // The largest plane of every mask before what it leaves, which may be a neighbour's.
+    for (int round = 0; round < kMaxModelsPerMask; ++round) {
+      for (MaskGroup& group : groups) found += fit_in_mask(group);
     }
     return found;
   }
 
   int find_without_masks() {
-    std::vector<int> pool;
-    for (int i = 0; i < shown_.size(); ++i) {
-      if (shown_.plane[i] == kNone) pool.push_back(i);
-    }
     int found = 0;
-    int implausible = 0;
-    const int min_size = std::max(context_.options.min_inliers, kMinUnmasked);
-    fit_sequentially(pool, min_size, kMaxModelsWithoutMasks, [&](const std::vector<int>& left) {
-      if (implausible == kMaxImplausible) return std::vector<int>();
-      auto candidate = fit(left, context_.scale.eps_pi, 0.0);
-      if (!candidate) return std::vector<int>();
-      // A slab of clutter leaves the pool too, or it would be found again.
-      const std::vector<int> consumed = candidate->inliers;
-      ++implausible;
-      if (!tighten(left, *candidate)) return consumed;
-      const bool coherent = coherence(shown_, *candidate) > plausible_.min_coherence;
-      keep_coherent(shown_, plausible_, *candidate);
-      keep_connected(shown_, context_.scale, *candidate);
-      if (!coherent || static_cast<int>(candidate->inliers.size()) < min_size ||
-          !is_plausible(*candidate)) {
-        return consumed;
+    if (shown_.has_normals) {
+      for (const DirectionGroup& group : groups_by_direction(shown_, unowned(), min_unmasked())) {
+        found += find_in_group(group);
       }
-      --implausible;
-      add_plane(*candidate, 0);
-      ++found;
-      return candidate->inliers;
-    });
-    return found;
+    }
+    // Of thin and far surfaces no normal is known.
+    return found + find_in_group({unowned()});
   }
 
  private:
+  std::vector<int> unowned() const {
+    std::vector<int> result;
+    for (int i = 0; i < shown_.size(); ++i) {
+      if (shown_.plane[i] == kNone) result.push_back(i);
+    }
+    return result;
+  }
+
+  int min_unmasked() const { return std::max(context_.options.min_inliers, kMinUnmasked); }
+
+  /// What a mask shows that no plane owns.
+  struct MaskGroup {
+    int label = 0;
+    int in_mask = 0;        ///< points of the mask, owned or not
+    std::vector<int> left;  ///< those to which a plane may be fitted yet
+  };
+
+  std::vector<MaskGroup> groups_in_masks() const {
+    std::vector<MaskGroup> groups;
+    for (int i = 0; i < shown_.size(); ++i) {
+      const int label = shown_.label[i];
+      if (label <= 0) continue;
+      if (groups.size() <= static_cast<std::size_t>(label)) groups.resize(label + 1);
+      MaskGroup& group = groups[label];
+      group.label = label;
+      ++group.in_mask;
+      if (shown_.plane[i] == kNone) group.left.push_back(i);
+    }
+    std::stable_sort(groups.begin(), groups.end(), [](const MaskGroup& a, const MaskGroup& b) {
+      return a.left.size() > b.left.size();
+    });
+    return groups;
+  }
+
+  /// Planes one after the other among points that no mask speaks for.
+  int find_in_group(const DirectionGroup& group) {
+    int found = 0;
+    int implausible = 0;
+    const int min_size = min_unmasked();
+    fit_sequentially(
+        group.points, min_size, kMaxModelsWithoutMasks, [&](const std::vector<int>& left) {
+          if (implausible == kMaxImplausible) return std::vector<int>();
+          auto candidate = fit(left, context_.scale.eps_pi, 0.0, group.direction);
+          if (!candidate) return std::vector<int>();
+          // A slab of clutter leaves the pool too, or it would be found again.
+          const std::vector<int> consumed = candidate->inliers;
+          ++implausible;
+          if (!tighten(left, *candidate)) return consumed;
+          const bool coherent = coherence(shown_, *candidate) > plausible_.min_coherence;
+          keep_coherent(shown_, plausible_, *candidate);
+          keep_connected(shown_, context_.scale, *candidate);
+          if (!coherent || static_cast<int>(candidate->inliers.size()) < min_size ||
+              !is_plausible(*candidate)) {
+            return consumed;
+          }
+          --implausible;
+          add_plane(*candidate, 0);
+          ++found;
+          return candidate->inliers;
+        });
+    return found;
+  }
+
+  /// Fits a plane to what is left of the mask; whether there is one. What it explains leaves the
+  /// group, and so does everything where there is none.
+  bool fit_in_mask(MaskGroup& group) {
+    std::erase_if(group.left, [&](int i) { return shown_.plane[i] != kNone; });
+    const std::vector<int> pool = std::exchange(group.left, {});
+    if (static_cast<int>(pool.size()) < context_.options.min_inliers) return false;
+    auto candidate = fit(pool, context_.scale.eps_d, kMinMaskRatio, Eigen::Vector3d::Zero());
+    if (!candidate || !tighten(pool, *candidate)) return false;
+    candidate->label = group.label;
+    keep_connected(shown_, context_.scale, *candidate);
+    const auto inliers = static_cast<int>(candidate->inliers.size());
+    if (inliers < context_.options.min_inliers || inliers < kMinShareOfMask * group.in_mask ||
+        !is_plausible(*candidate)) {
+      return false;
+    }
+    add_plane(*candidate, group.label);
+    for (const int i : pool) {
+      const double distance = candidate->plane.signed_distance(shown_.points.positions[i]);
+      const bool explained = std::abs(distance) < shown_.points.band[i] * context_.scale.eps_d;
+      if (!explained) group.left.push_back(i);
+    }
+    return true;
+  }
+
   RansacOptions ransac_options(double threshold, double min_ratio) const {
     RansacOptions options;
     options.threshold = threshold;
@@ -160,9 +215,9 @@ class PlaneFinder {
   }
 
   std::optional<PlaneCandidate> fit(const std::vector<int>& group, double threshold,
-                                    double min_ratio) {
+                                    double min_ratio, const Eigen::Vector3d& direction) {
     const PlanePoints points = select(shown_.points, group);
-    const PlaneModel model(points);
+    const FacingPlaneModel model(points, direction);
     std::vector<NeighbourPair> neighbours;
     if (context_.options.graph_cut) {
       neighbours = radius_neighbours(points.positions, 2.0 * context_.scale.eps_d);
@@ -181,7 +236,7 @@ class PlaneFinder {
     return candidate;
   }
 
-  RansacResult<PlaneEquation> run(const PlaneModel& model, const std::vector<int>& group,
+  RansacResult<PlaneEquation> run(const FacingPlaneModel& model, const std::vector<int>& group,
                                   const std::vector<NeighbourPair>& neighbours,
                                   const RansacOptions& options) {
     if (model.size() < PlaneModel::kSampleSize) return {};
@@ -200,7 +255,8 @@ class PlaneFinder {
     for (const int i : pool) {
       const double distance = candidate.plane.signed_distance(shown_.points.positions[i]);
       if (std::abs(distance) < shown_.points.band[i] * eps &&
-          shown_.points.view_from[i].dot(candidate.plane.normal) > 0.0) {
+          shown_.points.view_from[i].dot(candidate.plane.normal) > 0.0 &&
+          shown_.may_face(i, candidate.plane.normal)) {
         result.push_back(i);
       }
     }
@@ -222,7 +278,8 @@ class PlaneFinder {
   }
 
   bool is_plausible(const PlaneCandidate& candidate) const {
-    return is_broad(shown_, candidate, plausible_) &&
+    return is_faced(shown_, candidate, context_.scale, plausible_) &&
+           is_broad(shown_, candidate, plausible_) &&
            contrast(map_, shown_, candidate, context_.scale) > plausible_.min_contrast;
   }
 

@@ -88,8 +88,11 @@ void extend_box(GrowingPlane& growing, const Eigen::Vector3d& point) {
   growing.high = growing.high.cwiseMax(point);
 }
 
-bool is_near(GrowingPlane& growing, const Eigen::Vector3d& point, const PlaneScale& scale) {
-  if (!growing.link) growing.link = link_of(growing.support, scale);
+bool is_near(GrowingPlane& growing, const Eigen::Vector3d& point, bool in_mask,
+             const PlaneScale& scale) {
+  if (!growing.link) {
+    growing.link = in_mask ? link_in_mask(growing.support, scale) : link_of(growing.support, scale);
+  }
   const double link = *growing.link;
   if ((point.array() < growing.low.array() - link).any() ||
       (point.array() > growing.high.array() + link).any()) {
@@ -127,12 +130,12 @@ GrowingPlane* taker_of(const Map& map, std::vector<GrowingPlane>& planes,
     const double distance = std::abs(plane.signed_distance(points.positions[i]));
     if (distance >= std::min(best, points.band[i] * growing.eps)) continue;
     if (points.view_from[i].dot(plane.normal) <= 0.0) continue;
-    if (!masks.allow(shown.label[i], plane.id)) continue;
+    if (!masks.allow(shown.label[i], plane.id) || !shown.may_face(i, plane.normal)) continue;
     if (!shown.has_masks &&
         explained_neighbours(shown, i, plane, growing.eps) < min_explained(growing)) {
       continue;
     }
-    if (!is_near(growing, points.positions[i], scale)) continue;
+    if (!is_near(growing, points.positions[i], shown.has_masks, scale)) continue;
     best = distance;
     taker = &growing;
   }
@@ -146,8 +149,8 @@ void note_observer(Plane& plane, KeyframeId keyframe) {
 
 void note_observers(Map& map, KeyframeId keyframe, const KeyframePoints& shown) {
   std::vector<int> count(static_cast<std::size_t>(map.planes.next_id()), 0);
-  for (const PlaneId plane : shown.plane) {
-    if (plane != kNone) ++count[plane];
+  for (int i = 0; i < shown.observed; ++i) {
+    if (shown.plane[i] != kNone) ++count[shown.plane[i]];
   }
   for (Plane& plane : map.planes) {
     if (count[plane.id] >= kMinObserved) note_observer(plane, keyframe);

@@ -1,5 +1,6 @@
 #include "slam/stages/plane_plausibility.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -44,6 +45,28 @@ Eigen::Vector2d spread_of(const std::vector<Eigen::Vector3d>& points, const Plan
   return {std::sqrt(half_trace + root), std::sqrt(std::max(half_trace - root, 0.0))};
 }
 
+struct Neighbours {
+  int asked = 0;
+  int marked = 0;
+  double share() const { return asked == 0 ? 0.0 : static_cast<double>(marked) / asked; }
+};
+
+Neighbours neighbours_of(const KeyframePoints& shown, const PlaneCandidate& candidate,
+                         const std::vector<char>& marks, int i) {
+  Neighbours result;
+  const std::size_t row =
+      static_cast<std::size_t>(i) * static_cast<std::size_t>(shown.nearest.count);
+  for (std::size_t k = 0; k < kCoherenceNeighbours; ++k) {
+    const int other = shown.nearest.index[row + k];
+    if (other < 0) continue;
+    const bool asked = !shown.has_normals || (!shown.normal[other].isZero() &&
+                                              shown.may_face(other, candidate.plane.normal));
+    result.asked += asked;
+    result.marked += asked && marks[other];
+  }
+  return result;
+}
+
 bool may_rival(const Map& map, PlaneId owner, const PlaneCandidate& candidate) {
   if (owner == kNone) return true;
   constexpr double kNearlyParallel = 0.9;
@@ -52,23 +75,15 @@ bool may_rival(const Map& map, PlaneId owner, const PlaneCandidate& candidate) {
 
 }  // namespace
 
-int marked_neighbours(const KeyframePoints& shown, const std::vector<char>& marks, int i) {
-  int count = 0;
-  const std::size_t row =
-      static_cast<std::size_t>(i) * static_cast<std::size_t>(shown.nearest.count);
-  for (std::size_t k = 0; k < kCoherenceNeighbours; ++k) {
-    const int other = shown.nearest.index[row + k];
-    count += other >= 0 && marks[other];
-  }
-  return count;
-}
-
 double coherence(const KeyframePoints& shown, const PlaneCandidate& candidate) {
-  if (candidate.inliers.empty()) return 0.0;
   const std::vector<char> marks = marks_of(shown, candidate);
-  double sum = 0.0;
-  for (const int i : candidate.inliers) sum += marked_neighbours(shown, marks, i);
-  return sum / (static_cast<double>(candidate.inliers.size()) * kCoherenceNeighbours);
+  Neighbours sum;
+  for (const int i : candidate.inliers) {
+    const Neighbours own = neighbours_of(shown, candidate, marks, i);
+    sum.asked += own.asked;
+    sum.marked += own.marked;
+  }
+  return sum.share();
 }
 
 void keep_coherent(const KeyframePoints& shown, const PlausibilityOptions& options,
@@ -76,21 +91,50 @@ void keep_coherent(const KeyframePoints& shown, const PlausibilityOptions& optio
   const std::vector<char> marks = marks_of(shown, candidate);
   std::vector<int> kept;
   for (const int i : candidate.inliers) {
-    if (marked_neighbours(shown, marks, i) >= options.min_coherent_neighbours) kept.push_back(i);
+    if (neighbours_of(shown, candidate, marks, i).share() > options.min_own_coherence) {
+      kept.push_back(i);
+    }
   }
   candidate.inliers = std::move(kept);
 }
 
 void keep_connected(const KeyframePoints& shown, const PlaneScale& scale,
                     PlaneCandidate& candidate) {
+  constexpr int kMinPatch = 3;
   if (candidate.inliers.empty()) return;
   const std::vector<Eigen::Vector3d> points = positions_of(shown, candidate);
-  const std::vector<int> cluster = cluster_points(points, link_of(points, scale));
+  const double link = shown.has_masks ? link_in_mask(points, scale) : link_of(points, scale);
+  const std::vector<int> cluster = cluster_points(points, link);
+  std::vector<int> size(cluster.size(), 0);
+  for (const int c : cluster) ++size[c];
   std::vector<int> kept;
   for (std::size_t i = 0; i < cluster.size(); ++i) {
-    if (cluster[i] == 0) kept.push_back(candidate.inliers[i]);
+    const bool joined = cluster[i] == 0 || (shown.has_masks && size[cluster[i]] >= kMinPatch);
+    if (joined) kept.push_back(candidate.inliers[i]);
   }
   candidate.inliers = std::move(kept);
+}
+
+bool is_faced(const KeyframePoints& shown, const PlaneCandidate& candidate, const PlaneScale& scale,
+              const PlausibilityOptions& options) {
+  if (!shown.has_normals) return true;
+  Eigen::AlignedBox3d box;
+  for (const int i : candidate.inliers) box.extend(shown.points.positions[i]);
+  int known = 0;
+  int facing = 0;
+  for (int i = 0; i < shown.size(); ++i) {
+    if (shown.plane[i] != kNone || shown.normal[i].isZero()) continue;
+    if (candidate.label > 0 && shown.label[i] != candidate.label) continue;
+    const Eigen::Vector3d& point = shown.points.positions[i];
+    const double distance = std::abs(candidate.plane.signed_distance(point));
+    if (distance > shown.points.band[i] * candidate.eps || !box.contains(point)) continue;
+    ++known;
+    facing += shown.may_face(i, candidate.plane.normal);
+  }
+  const bool sharp = is_sharp(candidate.eps, scale);
+  const double inliers = static_cast<double>(candidate.inliers.size());
+  return facing >= options.min_facing * known &&
+         (sharp || facing >= options.min_facing_of_thick * inliers);
 }
 
 bool is_broad(const KeyframePoints& shown, const PlaneCandidate& candidate,
@@ -98,10 +142,10 @@ bool is_broad(const KeyframePoints& shown, const PlaneCandidate& candidate,
   double view = 0.0;
   for (const int i : candidate.inliers)
     view += shown.points.view_from[i].dot(candidate.plane.normal);
+  const double breadth = candidate.label > 0 ? options.min_breadth_in_mask : options.min_breadth;
   const Eigen::Vector2d spread = spread_of(positions_of(shown, candidate), candidate.plane);
   return view > options.min_view_cosine * static_cast<double>(candidate.inliers.size()) &&
-         spread.y() > options.min_breadth * candidate.eps &&
-         spread.y() > options.min_slimness * spread.x();
+         spread.y() > breadth * candidate.eps && spread.y() > options.min_slimness * spread.x();
 }
 
 double contrast(const Map& map, const KeyframePoints& shown, const PlaneCandidate& candidate,
@@ -109,11 +153,11 @@ double contrast(const Map& map, const KeyframePoints& shown, const PlaneCandidat
   const std::vector<Eigen::Vector3d> patch = positions_of(shown, candidate);
   const double link = link_of(patch, scale);
   const std::vector<char> is_inlier = marks_of(shown, candidate);
-  const int label = candidate.inliers.empty() ? 0 : shown.label[candidate.inliers.front()];
   int beside = 0;
   for (int i = 0; i < shown.size(); ++i) {
     if (is_inlier[i] || !may_rival(map, shown.plane[i], candidate)) continue;
-    if (shown.has_masks && shown.label[i] != label) continue;
+    if (!shown.may_face(i, candidate.plane.normal)) continue;
+    if (shown.has_masks && shown.label[i] != candidate.label) continue;
     const double distance = candidate.plane.signed_distance(shown.points.positions[i]);
     const double bands = std::abs(distance) / (shown.points.band[i] * candidate.eps);
     if (bands > 3.0 || bands < 1.0) continue;

@@ -13,10 +13,13 @@ namespace planecast::slam {
 struct PlausibilityOptions {
   double min_contrast = 3.0;   ///< density inside the band over that between 1 and 3 bands
   double min_coherence = 0.5;  ///< share of the inliers' nearest image neighbours that are inliers
-  int min_coherent_neighbours = 2;  ///< of kCoherenceNeighbours; an inlier with fewer is dropped
-  double min_view_cosine = 0.1;     ///< mean, of viewing rays to the normal
+  double min_own_coherence = 0.3;  ///< an inlier of which fewer neighbours are inliers is dropped
+  double min_view_cosine = 0.1;    ///< mean, of viewing rays to the normal
   double min_breadth = 1.5;  ///< standard deviation along the shorter side, in the candidate's eps
-  double min_slimness = 0.07;  ///< of the shorter side over the longer
+  double min_breadth_in_mask = 1.0;  ///< the same where a mask speaks for the plane
+  double min_facing = 0.6;           ///< see is_faced()
+  double min_facing_of_thick = 0.5;  ///< ... those that do over the inliers
+  double min_slimness = 0.07;        ///< of the shorter side over the longer
 };
 inline constexpr int kCoherenceNeighbours = 6;
 
@@ -25,21 +28,28 @@ struct PlaneCandidate {
   PlaneEquation plane;
   std::vector<int> inliers;  ///< indices into KeyframePoints
   double eps = 0.0;          ///< its own inlier distance (own_eps)
+  int label = 0;             ///< of the mask that it was found in, 0 = none
 };
 
-/// Number of the nearest image neighbours of point i that are marked; needs shown.nearest.
-int marked_neighbours(const KeyframePoints& shown, const std::vector<char>& marks, int i);
-
-/// Share of the inliers' nearest image neighbours that are inliers; needs shown.nearest.
+/// Share of the inliers' nearest image neighbours that are inliers; needs shown.nearest. Where
+/// normals are known [D] only neighbours that face the same way are asked: a step of a stair
+/// adjoins what faces another way all along.
 double coherence(const KeyframePoints& shown, const PlaneCandidate& candidate);
 
 /// Drops inliers that lie amid others in the image; needs shown.nearest.
 void keep_coherent(const KeyframePoints& shown, const PlausibilityOptions& options,
                    PlaneCandidate& candidate);
 
-/// Keeps the largest patch: what lies across a gap may be another plane of the same height.
+/// Keeps the largest patch: what lies across a gap may be another plane of the same height. Of a
+/// mask, which says that it is not, only strays are dropped.
 void keep_connected(const KeyframePoints& shown, const PlaneScale& scale,
                     PlaneCandidate& candidate);
+
+/// Whether of the points that no plane owns in the slab about the inliers (of the candidate's mask,
+/// if it has one) most face the plane's way, where their normal is known; and whether that is so of
+/// many where the candidate is as thick as eps_d. True without normals.
+bool is_faced(const KeyframePoints& shown, const PlaneCandidate& candidate, const PlaneScale& scale,
+              const PlausibilityOptions& options);
 
 /// Neither a line of points nor seen edge-on.
 bool is_broad(const KeyframePoints& shown, const PlaneCandidate& candidate,

@@ -7,69 +7,15 @@
 #include <tuple>
 
 #include "slam/geometry/depth_noise.h"
-#include "slam/segmentation/plane_segmenter.h"
 
 namespace planecast::slam {
 
 namespace {
 
 constexpr double kMaxBand = 2.5;
-/// [D] Depth samples per image row: enough for a plane of a hundredth of the image to have 8.
-constexpr int kSamplesPerRow = 32;
 /// Of own_eps: the least, in eps_d, and its standard deviations.
 constexpr double kTightest = 0.35;
 constexpr double kSigmas = 3.0;
-
-void append_landmarks(const Map& map, const Keyframe& keyframe, const PlaneContext& context,
-                      KeyframePoints& out) {
-  for (std::size_t k = 0; k < keyframe.landmarks.size(); ++k) {
-    const Landmark* landmark = map.landmarks.find(keyframe.landmarks[k]);
-    if (landmark == nullptr) continue;
-    const double z = (keyframe.cam_from_world * landmark->position).z();
-    if (!(z > 0.0)) continue;
-    out.points.positions.push_back(landmark->position);
-    out.points.view_from.push_back(landmark->view_from);
-    out.points.band.push_back(band_of(context, z));
-    out.landmark.push_back(landmark->id);
-    out.plane.push_back(map.planes.contains(landmark->plane) ? landmark->plane : kNone);
-    out.label.push_back(k < keyframe.labels.size() ? keyframe.labels[k] : 0);
-    const Eigen::Vector2f pixel = keyframe.features->keypoints[k].pixel;
-    out.pixel.emplace_back(pixel.x(), pixel.y(), 0.0);
-    out.point_cam.push_back(Eigen::Vector3f::Zero());
-  }
-}
-
-void append_depth_sample(const Keyframe& keyframe, const PlaneContext& context, int x, int y,
-                         KeyframePoints& out) {
-  const double z = keyframe.depth.at<float>(y, x);
-  if (!(z > 0.0)) return;
-  const double band = band_of(context, z);
-  if (3.0 * depth_sigma_m(z) > kMaxBand * context.scale.eps_d) return;
-  const Eigen::Vector2d raw(x, y);
-  const Eigen::Vector2d pixel =
-      context.camera.has_distortion() ? context.camera.undistort(raw) : raw;
-  const Eigen::Vector3d point_cam = z * context.camera.ray(pixel);
-  const Pose world_from_cam = keyframe.cam_from_world.inverse();
-  out.points.positions.push_back(world_from_cam * point_cam);
-  out.points.view_from.push_back(world_from_cam.linear() * -point_cam.normalized());
-  out.points.band.push_back(band);
-  out.landmark.push_back(kNone);
-  out.plane.push_back(kNone);
-  out.label.push_back(label_at(keyframe.label_image, raw.cast<float>()));
-  out.pixel.emplace_back(pixel.x(), pixel.y(), 0.0);
-  out.point_cam.push_back(point_cam.cast<float>());
-}
-
-void append_depth_samples(const Keyframe& keyframe, const PlaneContext& context,
-                          KeyframePoints& out) {
-  if (!context.rgbd || keyframe.depth.empty()) return;
-  const int step = std::max(1, keyframe.depth.cols / kSamplesPerRow);
-  for (int y = step / 2; y < keyframe.depth.rows; y += step) {
-    for (int x = step / 2; x < keyframe.depth.cols; x += step) {
-      append_depth_sample(keyframe, context, x, y, out);
-    }
-  }
-}
 
 }  // namespace
 
@@ -87,18 +33,8 @@ double band_of_landmark(const Map& map, const Landmark& landmark, const PlaneCon
   return band_of(context, std::max(z, kNearest_m));
 }
 
-KeyframePoints gather_points(const Map& map, KeyframeId id, const PlaneContext& context) {
-  KeyframePoints result;
-  const Keyframe* keyframe = map.keyframes.find(id);
-  if (keyframe == nullptr || keyframe->features == nullptr) return result;
-  append_landmarks(map, *keyframe, context, result);
-  append_depth_samples(*keyframe, context, result);
-  result.has_masks = !keyframe->label_image.empty() ||
-                     std::any_of(keyframe->labels.begin(), keyframe->labels.end(),
-                                 [](int label) { return label > 0; });
-  constexpr int kImageNeighbours = 16;
-  if (!result.has_masks) result.nearest = nearest_points(result.pixel, kImageNeighbours);
-  return result;
+bool is_too_vague(const PlaneContext& context, double z_m) {
+  return 3.0 * depth_sigma_m(z_m) > kMaxBand * context.scale.eps_d;
 }
 
 std::vector<PlaneSupport> gather_support(const Map& map, const PlaneContext& context) {
@@ -158,7 +94,11 @@ PlaneMixtureOptions mixture_options(const PlaneScale& scale) {
 }
 
 int strong_support(const Plane& plane, const PlaneMappingOptions& options) {
-  return plane.label > 0 ? options.strong_inliers : 2 * options.strong_inliers;
+  constexpr std::size_t kManyObservers = 5;
+  constexpr double kConfirmed = 0.6;
+  if (plane.label == 0) return 2 * options.strong_inliers;
+  if (plane.observers.size() < kManyObservers) return options.strong_inliers;
+  return static_cast<int>(std::lround(kConfirmed * options.strong_inliers));
 }
 
 int least_observers(const Plane& plane, const PlaneContext& context) {
@@ -167,7 +107,8 @@ int least_observers(const Plane& plane, const PlaneContext& context) {
 }
 
 bool may_be_slab(const Plane& plane, const PlanePoints& support, const PlaneContext& context) {
-  if (plane.label > 0 || context.young || context.options.merge == PlaneMerge::kPaper) return false;
+  const bool vouched = context.rgbd && plane.label > 0;
+  if (vouched || context.young || context.options.merge == PlaneMerge::kPaper) return false;
   return !is_sharp(own_eps({plane.normal, plane.offset}, support, context.scale), context.scale);
 }
 
@@ -241,7 +182,11 @@ void erase_plane(Map& map, PlaneId plane) {
 }
 
 double link_of(const std::vector<Eigen::Vector3d>& support, const PlaneScale& scale) {
-  return std::clamp(linking_distance(support), 2.0 * scale.eps_d, 6.0 * scale.eps_d);
+  return std::min(link_in_mask(support, scale), 6.0 * scale.eps_d);
+}
+
+double link_in_mask(const std::vector<Eigen::Vector3d>& support, const PlaneScale& scale) {
+  return std::max(linking_distance(support), 2.0 * scale.eps_d);
 }
 
 }  // namespace planecast::slam

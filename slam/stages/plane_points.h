@@ -25,11 +25,16 @@ struct PlaneContext {
 /// metres, bounded to 2.5 eps_d, beyond which depth is too vague to tell planes; mono: 1.
 double band_of(const PlaneContext& context, double z_m);
 
-/// The same of a landmark, at its depth in the first keyframe that sees it.
+/// band_of a landmark, at its depth in the first keyframe that sees it.
 double band_of_landmark(const Map& map, const Landmark& landmark, const PlaneContext& context);
 
+/// Whether depth at z_m is vaguer than the widest band, so that it tells no plane.
+bool is_too_vague(const PlaneContext& context, double z_m);
+
 /// What one keyframe shows that planes can be made of: its landmarks and, in RGB-D, samples of its
-/// depth on a coarse grid. All vectors are parallel.
+/// depth on a coarse grid. [D] Where there are masks, also the landmarks that lie in one of them
+/// but were not found again in this keyframe: a mask shows a surface that few features lie on at
+/// once. All vectors are parallel.
 struct KeyframePoints {
   PlanePoints points;
   std::vector<LandmarkId> landmark;        ///< kNone: a depth sample
@@ -37,10 +42,16 @@ struct KeyframePoints {
   std::vector<int> label;                  ///< mask instance, 0 = none
   std::vector<Eigen::Vector3d> pixel;      ///< undistorted, third coordinate 0
   std::vector<Eigen::Vector3f> point_cam;  ///< of depth samples
-  NearestTable nearest;                    ///< in the image; only where there are no masks
-  bool has_masks = false;                  ///< somebody segmented this image
+  /// [D] RGB-D: of the surface about the point, in the world, towards the camera; zero: not known.
+  std::vector<Eigen::Vector3d> normal;
+  bool has_normals = false;
+  NearestTable nearest;    ///< in the image; only where there are no masks
+  bool has_masks = false;  ///< somebody segmented this image
+  int observed = 0;        ///< the first so many were seen in the keyframe itself
 
   int size() const { return points.size(); }
+  /// Whether the surface about point i may face this way; true where its normal is not known.
+  bool may_face(int i, const Eigen::Vector3d& direction) const;
 };
 KeyframePoints gather_points(const Map& map, KeyframeId keyframe, const PlaneContext& context);
 
@@ -64,8 +75,9 @@ double eps_of_sigma(double sigma, const PlaneScale& scale);
 /// be things that stand about: nothing is moved onto such a plane, or it would make itself true.
 bool is_sharp(double own_eps, const PlaneScale& scale);
 
-/// Whether a plane for which no mask speaks is as thick as the slab it was cut out by, in a map old
-/// enough for it to be thin: it stays weak.
+/// Whether a plane is as thick as the slab it was cut out by, in a map old enough for it to be
+/// thin: it stays weak. A mask alone is no excuse [D], what leaked into it may be clutter; mask and
+/// depth together are, since a sensor bends what is far.
 bool may_be_slab(const Plane& plane, const PlanePoints& support, const PlaneContext& context);
 
 /// How a plane is told from what stands before it: among the points up to 2 eps_d off, with a
@@ -73,7 +85,8 @@ bool may_be_slab(const Plane& plane, const PlanePoints& support, const PlaneCont
 PlaneMixtureOptions mixture_options(const PlaneScale& scale);
 
 /// Support below which the plane is weak. [D] Twice the option for one that was found without a
-/// mask and so has no second witness.
+/// mask and so has no second witness; three fifths of it for one with a mask that five keyframes
+/// have confirmed.
 int strong_support(const Plane& plane, const PlaneMappingOptions& options);
 
 /// Keyframes that must have seen a plane before it is more than weak. [D] One view of a monocular
@@ -96,5 +109,8 @@ void erase_plane(Map& map, PlaneId plane);
 /// Distance within which points of a plane count as connected, from its support's spacing, between
 /// 2 and 6 eps_d.
 double link_of(const std::vector<Eigen::Vector3d>& support, const PlaneScale& scale);
+/// The same where a mask says that the points are of one surface [D]: without the upper bound, for
+/// features may be few and far between on it.
+double link_in_mask(const std::vector<Eigen::Vector3d>& support, const PlaneScale& scale);
 
 }  // namespace planecast::slam

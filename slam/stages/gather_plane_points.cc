@@ -1,0 +1,144 @@
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "slam/segmentation/depth_normal.h"
+#include "slam/segmentation/plane_segmenter.h"
+#include "slam/stages/plane_points.h"
+
+namespace planecast::slam {
+
+namespace {
+
+/// [D] Depth samples per image row: enough for a plane of a hundredth of the image to have 8.
+constexpr int kSamplesPerRow = 32;
+
+int sample_step(const Keyframe& keyframe) {
+  return std::max(1, keyframe.depth.cols / kSamplesPerRow);
+}
+
+/// Of the surface about a raw pixel, in the world; zero where it is not known.
+Eigen::Vector3d normal_at(const Keyframe& keyframe, const PlaneContext& context,
+                          const Eigen::Vector2d& raw) {
+  const auto normal =
+      surface_normal(keyframe.depth, context.camera, static_cast<int>(std::lround(raw.x())),
+                     static_cast<int>(std::lround(raw.y())), sample_step(keyframe) / 2);
+  if (!normal) return Eigen::Vector3d::Zero();
+  return keyframe.cam_from_world.linear().transpose() * *normal;
+}
+
+void append_landmarks(const Map& map, const Keyframe& keyframe, const PlaneContext& context,
+                      KeyframePoints& out) {
+  for (std::size_t k = 0; k < keyframe.landmarks.size(); ++k) {
+    const Landmark* landmark = map.landmarks.find(keyframe.landmarks[k]);
+    if (landmark == nullptr) continue;
+    const double z = (keyframe.cam_from_world * landmark->position).z();
+    if (!(z > 0.0)) continue;
+    out.points.positions.push_back(landmark->position);
+    out.points.view_from.push_back(landmark->view_from);
+    out.points.band.push_back(band_of(context, z));
+    out.landmark.push_back(landmark->id);
+    out.plane.push_back(map.planes.contains(landmark->plane) ? landmark->plane : kNone);
+    out.label.push_back(k < keyframe.labels.size() ? keyframe.labels[k] : 0);
+    const Keypoint& keypoint = keyframe.features->keypoints[k];
+    const bool measured = context.rgbd && !keyframe.depth.empty() && keypoint.depth > 0.0F;
+    out.normal.push_back(measured ? normal_at(keyframe, context, keypoint.raw.cast<double>())
+                                  : Eigen::Vector3d(Eigen::Vector3d::Zero()));
+    out.pixel.emplace_back(keypoint.pixel.x(), keypoint.pixel.y(), 0.0);
+    out.point_cam.push_back(Eigen::Vector3f::Zero());
+  }
+}
+
+void append_depth_sample(const Keyframe& keyframe, const PlaneContext& context, int x, int y,
+                         KeyframePoints& out) {
+  const double z = keyframe.depth.at<float>(y, x);
+  if (!(z > 0.0)) return;
+  const double band = band_of(context, z);
+  if (is_too_vague(context, z)) return;
+  const Eigen::Vector2d raw(x, y);
+  const Eigen::Vector2d pixel =
+      context.camera.has_distortion() ? context.camera.undistort(raw) : raw;
+  const Eigen::Vector3d point_cam = z * context.camera.ray(pixel);
+  const Pose world_from_cam = keyframe.cam_from_world.inverse();
+  out.points.positions.push_back(world_from_cam * point_cam);
+  out.points.view_from.push_back(world_from_cam.linear() * -point_cam.normalized());
+  out.points.band.push_back(band);
+  out.landmark.push_back(kNone);
+  out.plane.push_back(kNone);
+  out.label.push_back(label_at(keyframe.label_image, raw.cast<float>()));
+  out.normal.push_back(normal_at(keyframe, context, raw));
+  out.pixel.emplace_back(pixel.x(), pixel.y(), 0.0);
+  out.point_cam.push_back(point_cam.cast<float>());
+}
+
+void append_depth_samples(const Keyframe& keyframe, const PlaneContext& context,
+                          KeyframePoints& out) {
+  if (!context.rgbd || keyframe.depth.empty()) return;
+  const int step = sample_step(keyframe);
+  for (int y = step / 2; y < keyframe.depth.rows; y += step) {
+    for (int x = step / 2; x < keyframe.depth.cols; x += step) {
+      append_depth_sample(keyframe, context, x, y, out);
+    }
+  }
+}
+
+/// Landmarks in the keyframe's masks that it has no keypoint of. Only those that were seen from
+/// about here are taken, since others may be hidden.
+void append_unseen_landmarks(const Map& map, const Keyframe& keyframe, const PlaneContext& context,
+                             KeyframePoints& out) {
+  constexpr double kMinViewCosine = 0.95;
+  const Pose& cam_from_world = keyframe.cam_from_world;
+  const Eigen::Vector3d centre = keyframe.centre_world();
+  std::vector<char> seen(static_cast<std::size_t>(map.landmarks.next_id()), 0);
+  for (const LandmarkId id : keyframe.landmarks) {
+    if (id != kNone) seen[static_cast<std::size_t>(id)] = 1;
+  }
+  for (const Landmark& landmark : map.landmarks) {
+    if (seen[static_cast<std::size_t>(landmark.id)] != 0) continue;
+    const Eigen::Vector3d to_camera = centre - landmark.position;
+    if (to_camera.dot(landmark.view_from) < kMinViewCosine * to_camera.norm()) continue;
+    const Eigen::Vector3d point_cam = cam_from_world * landmark.position;
+    if (!(point_cam.z() > 0.0)) continue;
+    const Eigen::Vector2d pixel = context.camera.project(point_cam);
+    if (!context.camera.contains(pixel)) continue;
+    const Eigen::Vector2d raw =
+        context.camera.has_distortion() ? context.camera.distort(pixel) : pixel;
+    const int label = label_at(keyframe.label_image, raw.cast<float>());
+    if (label == 0) continue;
+    out.normal.push_back(Eigen::Vector3d::Zero());
+    out.points.positions.push_back(landmark.position);
+    out.points.view_from.push_back(landmark.view_from);
+    out.points.band.push_back(band_of(context, point_cam.z()));
+    out.landmark.push_back(landmark.id);
+    out.plane.push_back(map.planes.contains(landmark.plane) ? landmark.plane : kNone);
+    out.label.push_back(label);
+    out.pixel.emplace_back(pixel.x(), pixel.y(), 0.0);
+    out.point_cam.push_back(Eigen::Vector3f::Zero());
+  }
+}
+
+}  // namespace
+
+bool KeyframePoints::may_face(int i, const Eigen::Vector3d& direction) const {
+  constexpr double kMinCosine = 0.85;
+  return normal[i].isZero() || normal[i].dot(direction) > kMinCosine;
+}
+
+KeyframePoints gather_points(const Map& map, KeyframeId id, const PlaneContext& context) {
+  KeyframePoints result;
+  const Keyframe* keyframe = map.keyframes.find(id);
+  if (keyframe == nullptr || keyframe->features == nullptr) return result;
+  append_landmarks(map, *keyframe, context, result);
+  append_depth_samples(*keyframe, context, result);
+  result.observed = result.size();
+  result.has_normals = context.rgbd && !keyframe->depth.empty();
+  if (!keyframe->label_image.empty()) append_unseen_landmarks(map, *keyframe, context, result);
+  result.has_masks = !keyframe->label_image.empty() ||
+                     std::any_of(keyframe->labels.begin(), keyframe->labels.end(),
+                                 [](int label) { return label > 0; });
+  constexpr int kImageNeighbours = 16;
+  if (!result.has_masks) result.nearest = nearest_points(result.pixel, kImageNeighbours);
+  return result;
+}
+
+}  // namespace planecast::slam
