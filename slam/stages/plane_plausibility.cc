@@ -131,10 +131,10 @@ bool is_faced(const KeyframePoints& shown, const PlaneCandidate& candidate, cons
     ++known;
     facing += shown.may_face(i, candidate.plane.normal);
   }
-  const bool sharp = is_sharp(candidate.eps, scale);
+  const bool thick = candidate.label > 0 && !is_sharp(candidate.eps, scale);
   const double inliers = static_cast<double>(candidate.inliers.size());
   return facing >= options.min_facing * known &&
-         (sharp || facing >= options.min_facing_of_thick * inliers);
+         (!thick || facing >= options.min_facing_of_thick * inliers);
 }
 
 bool is_broad(const KeyframePoints& shown, const PlaneCandidate& candidate,

@@ -47,7 +47,7 @@ void keep_connected(const KeyframePoints& shown, const PlaneScale& scale,
 
 /// Whether of the points that no plane owns in the slab about the inliers (of the candidate's mask,
 /// if it has one) most face the plane's way, where their normal is known; and whether that is so of
-/// many where the candidate is as thick as eps_d. True without normals.
+/// many where a candidate of a mask is as thick as eps_d. True without normals.
 bool is_faced(const KeyframePoints& shown, const PlaneCandidate& candidate, const PlaneScale& scale,
               const PlausibilityOptions& options);
 
