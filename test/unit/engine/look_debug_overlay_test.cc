@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <future>
+#include <vector>
+
 #include "engine/output/palette.h"
 #include "test/unit/engine/table_world.h"
 
@@ -65,6 +69,26 @@ TEST(DebugOverlay, SameBytesAfterOtherFrames) {
   overlay.draw(world.frames[0], false, again);
   EXPECT_EQ(cv::norm(first, again, cv::NORM_INF), 0.0);
   EXPECT_GT(cv::norm(first, between, cv::NORM_INF), 0.0);
+}
+
+TEST(DebugOverlay, SeveralThreadsDrawTheSame) {
+  const Reconstruction world = table_world();
+  cv::Mat expected = grey_picture(world);
+  DebugOverlay(world).draw(world.frames[0], false, expected);
+  std::vector<std::future<double>> differences;
+  for (int thread = 0; thread < 4; ++thread) {
+    differences.push_back(std::async(std::launch::async, [&] {
+      double most = 0.0;
+      DebugOverlay overlay(world);
+      for (int round = 0; round < 20; ++round) {
+        cv::Mat picture = grey_picture(world);
+        overlay.draw(world.frames[0], false, picture);
+        most = std::max(most, cv::norm(picture, expected, cv::NORM_INF));
+      }
+      return most;
+    }));
+  }
+  for (std::future<double>& difference : differences) EXPECT_EQ(difference.get(), 0.0);
 }
 
 }  // namespace
