@@ -14,7 +14,7 @@ inline constexpr std::uintptr_t kFontTexture = 1;
 
 /// Dear ImGui with our font and colours, without a window or OpenGL: what is drawn depends on the
 /// calls, the input and the given time steps alone. ImGui has one current context in a process, so
-/// all of them belong to one thread.
+/// that only one thread at a time may make, use or end any of them.
 class GuiContext {
  public:
   /// `font_px` is the height of a line's capitals and descenders. Throws UserError when the font is

@@ -276,7 +276,11 @@ void MipTexture::add_level(const ImageU8& image, bool decode) {
   const auto height = static_cast<std::size_t>(image.height);
   const std::size_t follows = texels_.wrap_s == GL_REPEAT ? 0 : width - 1;
   const std::size_t after = before + (width + 1) * height;
-  decode ? texels_.floats.resize(after) : texels_.bytes.resize(after);
+  if (decode) {
+    texels_.floats.resize(after);
+  } else {
+    texels_.bytes.resize(after);
+  }
   const SrgbTables& tables = SrgbTables::get();
   for (std::size_t y = 0; y < height; ++y) {
     const std::uint8_t* row = &image.pixels[4 * y * width];
@@ -302,7 +306,11 @@ void MipTexture::reserve(const ImageU8& image, int levels, bool decode) {
     texels += static_cast<std::size_t>(std::max(image.width >> i, 1) + 1) *
               static_cast<std::size_t>(std::max(image.height >> i, 1));
   }
-  decode ? texels_.floats.reserve(texels) : texels_.bytes.reserve(texels);
+  if (decode) {
+    texels_.floats.reserve(texels);
+  } else {
+    texels_.bytes.reserve(texels);
+  }
 }
 
 void MipTexture::read(TextureReads& reads) const {

@@ -86,8 +86,7 @@ class GraphCutRansac {
         pairs_{options.lambda *
                    std::min(1.0, n_ / std::max(1.0, static_cast<double>(neighbours.size()))),
                options.pairs_by_contrast},
-        kernel_options_{options.threshold, kSupportReach, options.background_cost,
-                        kBackgroundReach},
+        kernel_options_{.threshold = options.threshold, .background_cost = options.background_cost},
         kernel_(static_cast<std::size_t>(n_)),
         squared_(static_cast<std::size_t>(n_)),
         label_(static_cast<std::size_t>(n_)) {
@@ -114,12 +113,9 @@ class GraphCutRansac {
 
  private:
   static constexpr int kBlock = 128;
-  /// [D] Distance, in thresholds, beyond which a point supports nothing: K falls below 0.14 there.
-  static constexpr double kSupportReach = 2.0;
   /// [D] Distance, in thresholds, up to which what the cut labels inlier is fitted to. A wider
   /// reach takes in what adjoins at the border, and the fit settles between both.
   static constexpr double kCutReach = 1.5;
-  static constexpr double kBackgroundReach = 3.0;
   /// Growth of the support that is worth another cut.
   static constexpr double kGrowth = 1.002;
   /// Share of the score that the final least squares may cost.

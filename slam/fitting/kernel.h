@@ -5,7 +5,7 @@ namespace planecast::slam {
 /// How points count for a model in Graph-Cut RANSAC.
 struct KernelOptions {
   double threshold = 1.0;  ///< eps_d, in the unit of the residuals
-  /// Distance, in thresholds, beyond which a point supports nothing.
+  /// [D] Distance, in thresholds, beyond which a point supports nothing: K falls below 0.14 there.
   double reach = 2.0;
   /// Charged for each point between 1 and `background_reach` thresholds.
   double background_cost = 0.0;

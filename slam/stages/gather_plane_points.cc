@@ -27,6 +27,41 @@ Eigen::Vector3d normal_at(const Keyframe& keyframe, const PlaneContext& context,
   return keyframe.cam_from_world.linear().transpose() * *normal;
 }
 
+/// One row of KeyframePoints.
+struct ShownPoint {
+  Eigen::Vector3d position, view_from, normal;
+  double z = 0.0;  ///< in the keyframe
+  LandmarkId landmark = kNone;
+  PlaneId plane = kNone;
+  int label = 0;
+  Eigen::Vector2d pixel;
+  Eigen::Vector3f point_cam = Eigen::Vector3f::Zero();
+};
+
+void append(const ShownPoint& point, const PlaneContext& context, KeyframePoints& out) {
+  out.points.positions.push_back(point.position);
+  out.points.view_from.push_back(point.view_from);
+  out.points.band.push_back(band_of(context, point.z));
+  out.landmark.push_back(point.landmark);
+  out.plane.push_back(point.plane);
+  out.label.push_back(point.label);
+  out.normal.push_back(point.normal);
+  out.pixel.emplace_back(point.pixel.x(), point.pixel.y(), 0.0);
+  out.point_cam.push_back(point.point_cam);
+}
+
+/// Without normal, label and pixel.
+ShownPoint shown_point(const Map& map, const Landmark& landmark, double z) {
+  ShownPoint point;
+  point.position = landmark.position;
+  point.view_from = landmark.view_from;
+  point.normal.setZero();
+  point.z = z;
+  point.landmark = landmark.id;
+  if (map.planes.contains(landmark.plane)) point.plane = landmark.plane;
+  return point;
+}
+
 void append_landmarks(const Map& map, const Keyframe& keyframe, const PlaneContext& context,
                       KeyframePoints& out) {
   for (std::size_t k = 0; k < keyframe.landmarks.size(); ++k) {
@@ -34,41 +69,32 @@ void append_landmarks(const Map& map, const Keyframe& keyframe, const PlaneConte
     if (landmark == nullptr) continue;
     const double z = (keyframe.cam_from_world * landmark->position).z();
     if (!(z > 0.0)) continue;
-    out.points.positions.push_back(landmark->position);
-    out.points.view_from.push_back(landmark->view_from);
-    out.points.band.push_back(band_of(context, z));
-    out.landmark.push_back(landmark->id);
-    out.plane.push_back(map.planes.contains(landmark->plane) ? landmark->plane : kNone);
-    out.label.push_back(k < keyframe.labels.size() ? keyframe.labels[k] : 0);
+    ShownPoint point = shown_point(map, *landmark, z);
+    if (k < keyframe.labels.size()) point.label = keyframe.labels[k];
     const Keypoint& keypoint = keyframe.features->keypoints[k];
-    const bool measured = context.rgbd && !keyframe.depth.empty() && keypoint.depth > 0.0F;
-    out.normal.push_back(measured ? normal_at(keyframe, context, keypoint.raw.cast<double>())
-                                  : Eigen::Vector3d(Eigen::Vector3d::Zero()));
-    out.pixel.emplace_back(keypoint.pixel.x(), keypoint.pixel.y(), 0.0);
-    out.point_cam.push_back(Eigen::Vector3f::Zero());
+    point.pixel = keypoint.pixel.cast<double>();
+    if (context.rgbd && !keyframe.depth.empty() && keypoint.depth > 0.0F) {
+      point.normal = normal_at(keyframe, context, keypoint.raw.cast<double>());
+    }
+    append(point, context, out);
   }
 }
 
 void append_depth_sample(const Keyframe& keyframe, const PlaneContext& context, int x, int y,
                          KeyframePoints& out) {
-  const double z = keyframe.depth.at<float>(y, x);
-  if (!(z > 0.0)) return;
-  const double band = band_of(context, z);
-  if (is_too_vague(context, z)) return;
+  ShownPoint point;
+  point.z = keyframe.depth.at<float>(y, x);
+  if (!(point.z > 0.0) || is_too_vague(context, point.z)) return;
   const Eigen::Vector2d raw(x, y);
-  const Eigen::Vector2d pixel =
-      context.camera.has_distortion() ? context.camera.undistort(raw) : raw;
-  const Eigen::Vector3d point_cam = z * context.camera.ray(pixel);
+  point.pixel = context.camera.has_distortion() ? context.camera.undistort(raw) : raw;
+  const Eigen::Vector3d point_cam = point.z * context.camera.ray(point.pixel);
   const Pose world_from_cam = keyframe.cam_from_world.inverse();
-  out.points.positions.push_back(world_from_cam * point_cam);
-  out.points.view_from.push_back(world_from_cam.linear() * -point_cam.normalized());
-  out.points.band.push_back(band);
-  out.landmark.push_back(kNone);
-  out.plane.push_back(kNone);
-  out.label.push_back(label_at(keyframe.label_image, raw.cast<float>()));
-  out.normal.push_back(normal_at(keyframe, context, raw));
-  out.pixel.emplace_back(pixel.x(), pixel.y(), 0.0);
-  out.point_cam.push_back(point_cam.cast<float>());
+  point.position = world_from_cam * point_cam;
+  point.view_from = world_from_cam.linear() * -point_cam.normalized();
+  point.label = label_at(keyframe.label_image, raw.cast<float>());
+  point.normal = normal_at(keyframe, context, raw);
+  point.point_cam = point_cam.cast<float>();
+  append(point, context, out);
 }
 
 void append_depth_samples(const Keyframe& keyframe, const PlaneContext& context,
@@ -87,7 +113,6 @@ void append_depth_samples(const Keyframe& keyframe, const PlaneContext& context,
 void append_unseen_landmarks(const Map& map, const Keyframe& keyframe, const PlaneContext& context,
                              KeyframePoints& out) {
   constexpr double kMinViewCosine = 0.95;
-  const Pose& cam_from_world = keyframe.cam_from_world;
   const Eigen::Vector3d centre = keyframe.centre_world();
   std::vector<char> seen(static_cast<std::size_t>(map.landmarks.next_id()), 0);
   for (const LandmarkId id : keyframe.landmarks) {
@@ -97,23 +122,15 @@ void append_unseen_landmarks(const Map& map, const Keyframe& keyframe, const Pla
     if (seen[static_cast<std::size_t>(landmark.id)] != 0) continue;
     const Eigen::Vector3d to_camera = centre - landmark.position;
     if (to_camera.dot(landmark.view_from) < kMinViewCosine * to_camera.norm()) continue;
-    const Eigen::Vector3d point_cam = cam_from_world * landmark.position;
+    const Eigen::Vector3d point_cam = keyframe.cam_from_world * landmark.position;
     if (!(point_cam.z() > 0.0)) continue;
-    const Eigen::Vector2d pixel = context.camera.project(point_cam);
-    if (!context.camera.contains(pixel)) continue;
+    ShownPoint point = shown_point(map, landmark, point_cam.z());
+    point.pixel = context.camera.project(point_cam);
+    if (!context.camera.contains(point.pixel)) continue;
     const Eigen::Vector2d raw =
-        context.camera.has_distortion() ? context.camera.distort(pixel) : pixel;
-    const int label = label_at(keyframe.label_image, raw.cast<float>());
-    if (label == 0) continue;
-    out.normal.push_back(Eigen::Vector3d::Zero());
-    out.points.positions.push_back(landmark.position);
-    out.points.view_from.push_back(landmark.view_from);
-    out.points.band.push_back(band_of(context, point_cam.z()));
-    out.landmark.push_back(landmark.id);
-    out.plane.push_back(map.planes.contains(landmark.plane) ? landmark.plane : kNone);
-    out.label.push_back(label);
-    out.pixel.emplace_back(pixel.x(), pixel.y(), 0.0);
-    out.point_cam.push_back(Eigen::Vector3f::Zero());
+        context.camera.has_distortion() ? context.camera.distort(point.pixel) : point.pixel;
+    point.label = label_at(keyframe.label_image, raw.cast<float>());
+    if (point.label != 0) append(point, context, out);
   }
 }
 

@@ -128,19 +128,18 @@ class PlaneFinder {
     std::vector<int> left;  ///< those to which a plane may be fitted yet
   };
 
+  /// Most to fit first, ties by label.
   std::vector<MaskGroup> groups_in_masks() const {
     std::vector<MaskGroup> groups;
-    for (int i = 0; i < shown_.size(); ++i) {
-      const int label = shown_.label[i];
-      if (label <= 0) continue;
-      if (groups.size() <= static_cast<std::size_t>(label)) groups.resize(label + 1);
-      MaskGroup& group = groups[label];
-      group.label = label;
-      ++group.in_mask;
-      if (shown_.plane[i] == kNone) group.left.push_back(i);
+    for (std::vector<int>& points : groups_by_label(shown_.label, context_.options.min_inliers)) {
+      const auto in_mask = static_cast<int>(points.size());
+      const int label = shown_.label[points.front()];
+      std::erase_if(points, [&](int i) { return shown_.plane[i] != kNone; });
+      groups.push_back({label, in_mask, std::move(points)});
     }
-    std::stable_sort(groups.begin(), groups.end(), [](const MaskGroup& a, const MaskGroup& b) {
-      return a.left.size() > b.left.size();
+    std::sort(groups.begin(), groups.end(), [](const MaskGroup& a, const MaskGroup& b) {
+      if (a.left.size() != b.left.size()) return a.left.size() > b.left.size();
+      return a.label < b.label;
     });
     return groups;
   }

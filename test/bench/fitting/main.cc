@@ -285,9 +285,6 @@ std::vector<Table> run_all(int trials) {
   return tables;
 }
 
-}  // namespace
-}  // namespace planecast::bench
-
 /// A process that does nothing but fits would give its memory back after each and ask for it again;
 /// among the allocations of a program that runs on it stays. Holds for every method.
 void keep_memory() {
@@ -295,11 +292,14 @@ void keep_memory() {
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
 }
 
+}  // namespace
+}  // namespace planecast::bench
+
 int main(int argc, char** argv) {
   const std::string folder = argc > 1 ? argv[1] : "docs/bench";
   const int trials = argc > 2 ? std::max(1, std::atoi(argv[2])) : 100;
   cv::setNumThreads(1);
-  keep_memory();
+  planecast::bench::keep_memory();
   const std::string introduction = fmt::format(
       "# Fitting: graph-cut RANSAC against others\n\nWritten by `bench_fitting` over {} random "
       "worlds a setting, the same ones for every method. F: mean F-score of the inlier labels "

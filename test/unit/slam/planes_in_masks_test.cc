@@ -18,32 +18,38 @@ using Eigen::Vector3d;
 /// A mask over the whole image.
 cv::Mat whole_image(int label) { return {480, 640, CV_16U, cv::Scalar(label)}; }
 
+/// A wall of 120 landmarks in mask 1, to which more is added; and the planes that two keyframes
+/// find in it.
+struct WallInMask {
+  std::mt19937 generator = test_generator();
+  MapBuilder builder{test_camera()};
+  std::vector<KeyframeId> views = add_pair(builder, {0, 0, 0}, {0, 0, 2});
+
+  WallInMask() { add(120, {-0.6, -0.5, 2.0}, {0.9, 0, 0}, {0, 1, 0}); }
+  void add(int count, const Vector3d& corner, const Vector3d& a, const Vector3d& b) {
+    add_all(builder, strew(generator, count, corner, a, b, 0.004), views, 1);
+  }
+  Map mapped() {
+    Map map = builder.build();
+    PlaneMapper mapper = mono_mapper();
+    map_planes(map, {0, 1, 1}, mapper);
+    return map;
+  }
+};
+
 TEST(PlanesInMasks, WhatLeakedInIsNoPlane) {
-  auto generator = test_generator();
-  MapBuilder builder(test_camera());
-  const auto views = add_pair(builder, {0, 0, 0}, {0, 0, 2});
-  add_all(builder, strew(generator, 120, {-0.6, -0.5, 2.0}, {0.9, 0, 0}, {0, 1, 0}, 0.004), views,
-          1);
+  WallInMask wall;
   // A fifth of the mask is a strip of the floor, which goes on in a mask of its own.
-  add_all(builder, strew(generator, 30, {-0.4, 0.6, 1.5}, {0.8, 0, 0}, {0, 0, 0.25}, 0.004), views,
-          1);
-  Map map = builder.build();
-  PlaneMapper mapper = mono_mapper();
-  map_planes(map, {0, 1, 1}, mapper);
+  wall.add(30, {-0.4, 0.6, 1.5}, {0.8, 0, 0}, {0, 0, 0.25});
+  const Map map = wall.mapped();
   ASSERT_EQ(map.planes.size(), 1U);
   EXPECT_EQ(count_matching(map, -Vector3d::UnitZ(), {0, 0, 2.0}, 0.01), 1);
 }
 
 TEST(PlanesInMasks, OneMaskOverTwoPlanesHoldsBoth) {
-  auto generator = test_generator();
-  MapBuilder builder(test_camera());
-  const auto views = add_pair(builder, {0, 0, 0}, {0, 0, 2});
-  add_all(builder, strew(generator, 120, {-0.6, -0.5, 2.0}, {0.9, 0, 0}, {0, 1, 0}, 0.004), views,
-          1);
-  add_all(builder, strew(generator, 80, {-0.5, 0.6, 1.3}, {1, 0, 0}, {0, 0, 0.6}, 0.004), views, 1);
-  Map map = builder.build();
-  PlaneMapper mapper = mono_mapper();
-  map_planes(map, {0, 1, 1}, mapper);
+  WallInMask wall;
+  wall.add(80, {-0.5, 0.6, 1.3}, {1, 0, 0}, {0, 0, 0.6});
+  const Map map = wall.mapped();
   EXPECT_EQ(map.planes.size(), 2U);
   EXPECT_EQ(count_matching(map, kUp, {0, 0.6, 1.6}, 0.01), 1);
 }
