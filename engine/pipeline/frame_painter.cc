@@ -33,16 +33,25 @@ class StopWatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// About a texel a pixel where the content fills the picture, which it hardly ever does.
-int shadow_map_size(const slam::Camera& camera) {
-  return std::clamp(static_cast<int>(std::bit_ceil(static_cast<unsigned>(camera.height))), 256,
-                    1024);
+/// A texel a pixel or more where the content is seen largest.
+int shadow_map_size(const Reconstruction& reconstruction, const PlacedScene& placed, bool causal) {
+  constexpr double kSmallest = 128.0;
+  constexpr double kLargest = 1024.0;
+  const slam::Camera& camera = reconstruction.camera;
+  double extent_px = 0.0;
+  for (const FrameRecord& frame : reconstruction.frames) {
+    const auto& pose = causal ? frame.causal_world_from_cam : frame.world_from_cam;
+    if (pose) extent_px = std::max(extent_px, placed.extent_px(frame.index, camera, *pose));
+  }
+  // The content hardly ever fills more than the picture's height.
+  const double most = std::clamp(static_cast<double>(camera.height), kSmallest, kLargest);
+  const double side = std::clamp(extent_px, kSmallest, most);
+  return static_cast<int>(std::bit_ceil(static_cast<unsigned>(side)));
 }
 
-render::RendererOptions renderer_options(const PainterOptions& options,
-                                         const slam::Camera& camera) {
+render::RendererOptions renderer_options(const PainterOptions& options, int shadow_map_size) {
   render::RendererOptions result;
-  result.shadow_map_size = shadow_map_size(camera);
+  result.shadow_map_size = shadow_map_size;
   result.shader_dir = options.shader_dir.string();
   result.only_opengl = options.only_opengl;
   return result;
@@ -63,11 +72,11 @@ FramePainter::FramePainter(const Reconstruction& reconstruction, const Content& 
       light_(light),
       warp_(drawing_camera(reconstruction.camera, options.look.lens)),
       grain_(options.seed),
-      renderer_(renderer_options(options, reconstruction.camera)) {
-  set_content(content);
+      placed_(std::in_place, reconstruction, content, options.placing),
+      shadow_map_size_(shadow_map_size(reconstruction, *placed_, options.placing.causal)),
+      renderer_(renderer_options(options, shadow_map_size_)) {
   scene_.light.sun.casts_shadow = options.placing.shadows;
-  scene_.light.sun.softness =
-      kShadowSoftness * static_cast<float>(shadow_map_size(reconstruction.camera));
+  scene_.light.sun.softness = kShadowSoftness * static_cast<float>(shadow_map_size_);
   // Live, the map and what is known of the light change from frame to frame.
   scene_.still = !options.placing.causal;
 }

@@ -63,8 +63,9 @@ class FramePainter {
   const LightTrack& light_;
   LensWarp warp_;
   Grain grain_;
-  render::Renderer renderer_;
   std::optional<PlacedScene> placed_;
+  int shadow_map_size_;
+  render::Renderer renderer_;
   render::LayerScene scene_;
   render::ImageF depth_;
   PaintTimes times_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "engine/convert.h"
 #include "engine/scene/plane_outline.h"
@@ -98,33 +99,52 @@ void PlacedScene::place_patches(const std::vector<MapPatch>& from, int frame_ind
   }
 }
 
+std::optional<Eigen::AlignedBox2d> PlacedScene::box_of(std::size_t item, int frame_index,
+                                                       const slam::Camera& camera,
+                                                       const slam::Pose& world_from_cam) const {
+  const PlacedObject& placed = content_.items[item].placed;
+  const auto plane = world_from_plane_of(item, frame_index);
+  if (!plane) return std::nullopt;
+  const slam::Pose cam_from_anchor =
+      world_from_cam.inverse() * *plane * placed.anchor.plane_from_anchor;
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector3d& corner : roomy_box(placed)) {
+    const Eigen::Vector3d p = cam_from_anchor * corner;
+    if (p.z() < 1e-3 * reconstruction_.median_depth) {
+      const Eigen::Vector2d far = Eigen::Vector2d::Constant(HUGE_VAL);
+      return Eigen::AlignedBox2d(-far, far);
+    }
+    // Far outside the picture the lens model folds back.
+    const Eigen::Vector2d pixel = camera.project(p);
+    box.extend(camera.contains(pixel) ? camera.distort(pixel) : pixel);
+  }
+  return box;
+}
+
 std::vector<cv::Rect> PlacedScene::bounds(int frame_index, const slam::Camera& camera,
                                           const slam::Pose& world_from_cam) const {
-  const cv::Rect whole(0, 0, camera.width, camera.height);
+  const Eigen::AlignedBox2d picture(Eigen::Vector2d::Zero(),
+                                    Eigen::Vector2d(camera.width, camera.height));
   std::vector<cv::Rect> all;
   for (std::size_t i = 0; i < content_.items.size(); ++i) {
-    const ContentItem& item = content_.items[i];
-    const auto plane = world_from_plane_of(i, frame_index);
-    if (!plane) continue;
-    const slam::Pose cam_from_anchor =
-        world_from_cam.inverse() * *plane * item.placed.anchor.plane_from_anchor;
-    Eigen::AlignedBox2d box;
-    for (const Eigen::Vector3d& corner : roomy_box(item.placed)) {
-      const Eigen::Vector3d p = cam_from_anchor * corner;
-      if (p.z() < 1e-3 * reconstruction_.median_depth) return {whole};
-      // Far outside the picture the lens model folds back.
-      const Eigen::Vector2d pixel = camera.project(p);
-      box.extend(camera.contains(pixel) ? camera.distort(pixel) : pixel);
-    }
-    const Eigen::Vector2d far = Eigen::Vector2d(camera.width, camera.height);
-    box = box.intersection(Eigen::AlignedBox2d(Eigen::Vector2d(-far), Eigen::Vector2d(2.0 * far)));
-    if (box.isEmpty()) continue;
-    const cv::Rect item_bounds(static_cast<int>(box.min().x()), static_cast<int>(box.min().y()),
-                               static_cast<int>(box.sizes().x()) + 2,
-                               static_cast<int>(box.sizes().y()) + 2);
-    all.push_back(item_bounds & whole);
+    auto box = box_of(i, frame_index, camera, world_from_cam);
+    if (!box || box->intersection(picture).isEmpty()) continue;
+    box = box->intersection(picture);
+    const cv::Rect item_bounds(static_cast<int>(box->min().x()), static_cast<int>(box->min().y()),
+                               static_cast<int>(box->sizes().x()) + 2,
+                               static_cast<int>(box->sizes().y()) + 2);
+    all.push_back(item_bounds & cv::Rect(0, 0, camera.width, camera.height));
   }
   return all;
+}
+
+double PlacedScene::extent_px(int frame_index, const slam::Camera& camera,
+                              const slam::Pose& world_from_cam) const {
+  Eigen::AlignedBox2d all;
+  for (std::size_t i = 0; i < content_.items.size(); ++i) {
+    if (const auto box = box_of(i, frame_index, camera, world_from_cam)) all.extend(*box);
+  }
+  return all.isEmpty() ? 0.0 : all.sizes().maxCoeff();
 }
 
 void PlacedScene::at(int frame_index, double time_s, render::LayerScene& scene) {

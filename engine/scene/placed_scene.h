@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <vector>
@@ -33,8 +34,17 @@ class PlacedScene {
   /// Raw pixels that each object (not its shadow) can cover at a frame, with room for animations.
   std::vector<cv::Rect> bounds(int frame_index, const slam::Camera& camera,
                                const slam::Pose& world_from_cam) const;
+  /// Of the longer side, in pixels, of the rectangle about all objects, also where they are outside
+  /// of the picture; infinite where one reaches behind the camera, 0 without objects.
+  double extent_px(int frame_index, const slam::Camera& camera,
+                   const slam::Pose& world_from_cam) const;
 
  private:
+  /// Raw pixels that the item can cover, also outside of the picture; infinite where it reaches
+  /// behind the camera. Nothing where it is not placed yet.
+  std::optional<Eigen::AlignedBox2d> box_of(std::size_t item, int frame_index,
+                                            const slam::Camera& camera,
+                                            const slam::Pose& world_from_cam) const;
   std::optional<slam::Pose> world_from_plane(int plane_id, int frame_index) const;
   /// World from the frame of the plane that the item stands on.
   std::optional<slam::Pose> world_from_plane_of(std::size_t item, int frame_index) const;
