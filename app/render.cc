@@ -20,9 +20,10 @@ struct RenderCommand {
     const Console console = common.console();
     const std::unique_ptr<engine::Sequence> sequence = input.open();
     const engine::Reconstruction map = engine::read_reconstruction(reconstruction);
-    const auto scene = read_scene(rendering, *sequence);
+    engine::ModelShelf models;
+    const auto scene = read_scene(rendering, *sequence, models);
     const engine::RenderSequenceResult result = render_with_progress(
-        *sequence, map, scene, resolve(rendering, common, input, causal), output, console);
+        *sequence, map, scene, resolve(rendering, common, input, causal, models), output, console);
     const RenderingReport report = report_rendering(result, output, console);
     common.print_result(
         report.place,

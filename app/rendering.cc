@@ -28,16 +28,17 @@ void add_rendering_options(CLI::App& command, RenderingOptions& options) {
 }
 
 std::optional<engine::SceneFile> read_scene(const RenderingOptions& options,
-                                            const engine::Sequence& sequence) {
+                                            const engine::Sequence& sequence,
+                                            engine::ModelShelf& models) {
   if (options.scene.empty()) return std::nullopt;
   engine::SceneFile scene = engine::read_scene_file(options.scene);
-  engine::check_content(scene, sequence.first_frame(), sequence.end_frame());
+  engine::check_content(scene, sequence.first_frame(), sequence.end_frame(), models);
   return scene;
 }
 
 engine::RenderSequenceOptions resolve(const RenderingOptions& rendering,
                                       const CommonOptions& common, const InputOptions& input,
-                                      bool causal) {
+                                      bool causal, engine::ModelShelf& models) {
   engine::RenderSequenceOptions options;
   options.causal = causal;
   options.video = !rendering.no_video;
@@ -48,6 +49,7 @@ engine::RenderSequenceOptions resolve(const RenderingOptions& rendering,
   options.only_opengl = rendering.painter == "gl";
   options.threads = common.threads;
   options.seed = common.seed;
+  options.models = &models;
   return options;
 }
 

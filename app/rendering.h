@@ -22,9 +22,11 @@ struct RenderingOptions {
 };
 void add_rendering_options(CLI::App& command, RenderingOptions& options);
 
-/// The scene file, checked as far as it can be before anything is tracked. Nothing without one.
+/// The scene file, checked as far as it can be before anything is tracked, which reads its models.
+/// Nothing without one.
 std::optional<engine::SceneFile> read_scene(const RenderingOptions& options,
-                                            const engine::Sequence& sequence);
+                                            const engine::Sequence& sequence,
+                                            engine::ModelShelf& models);
 
 /// Renders with a progress bar; without a scene file places the built-in model.
 engine::RenderSequenceResult render_with_progress(engine::Sequence& sequence,
@@ -36,7 +38,7 @@ engine::RenderSequenceResult render_with_progress(engine::Sequence& sequence,
 
 engine::RenderSequenceOptions resolve(const RenderingOptions& rendering,
                                       const CommonOptions& common, const InputOptions& input,
-                                      bool causal);
+                                      bool causal, engine::ModelShelf& models);
 
 /// Says on stderr how it went; the result's place and the figures are returned.
 struct RenderingReport {

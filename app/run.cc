@@ -88,7 +88,8 @@ void RunCommand::write_report(const engine::Reconstruction& reconstruction,
 int RunCommand::run() const {
   const Console console = common.console();
   const std::unique_ptr<engine::Sequence> sequence = input.open();
-  const auto scene = read_scene(rendering, *sequence);
+  engine::ModelShelf models;
+  const auto scene = read_scene(rendering, *sequence, models);
   engine::make_folder(output);
   const engine::Reconstruction reconstruction = reconstruct(*sequence, console);
   const TrackingReport tracked = report_tracking(reconstruction, tracking.causal);
@@ -97,7 +98,8 @@ int RunCommand::run() const {
     print_stopped(reconstruction);
     engine::require_complete(reconstruction);
   }
-  const engine::RenderSequenceOptions options = resolve(rendering, common, input, tracking.causal);
+  const engine::RenderSequenceOptions options =
+      resolve(rendering, common, input, tracking.causal, models);
   engine::RenderSequenceResult result;
   try {
     result = render_with_progress(*sequence, reconstruction, scene, options, output, console);

@@ -80,14 +80,16 @@ GoldenPictures draw_golden_case(const GoldenCase& golden_case, const fs::path& c
   use_portable_floats();
   const std::unique_ptr<Sequence> sequence = open_case(golden_case, cache, progress);
   std::optional<SceneFile> scene;
+  ModelShelf models;
   if (!golden_case.scene.empty()) {
     scene = read_scene_file(golden_case.scene);
-    check_content(*scene, sequence->first_frame(), sequence->end_frame());
+    check_content(*scene, sequence->first_frame(), sequence->end_frame(), models);
   }
   const Reconstruction reconstruction = reconstruct(golden_case, *sequence, threads, progress);
   RenderSequenceOptions options;
   options.causal = golden_case.causal;
   options.seed = golden_case.seed;
+  options.models = &models;
   const SceneFile chosen = scene ? *scene : default_scene(reconstruction, builtin_models());
   return draw_frames(*sequence, reconstruction, chosen, options, golden_case.frames).stills;
 }

@@ -48,7 +48,8 @@ class SequenceRenderer {
         options_(options),
         folder_(folder),
         markers_(find_markers(sequence, reconstruction, markers_of(scene))),
-        content_(load_content({reconstruction, options.causal, markers_}, scene)),
+        content_(load_content({reconstruction, options.causal, markers_}, scene,
+                              options.models != nullptr ? *options.models : own_models_)),
         light_(sequence, reconstruction, scene.light, light_options()) {
     for (const FrameRecord& record : reconstruction.frames) records_[record.index] = &record;
     result_.warnings = content_.warnings;
@@ -96,6 +97,7 @@ class SequenceRenderer {
   const RenderSequenceOptions& options_;
   std::filesystem::path folder_;
   MarkerMap markers_;
+  ModelShelf own_models_;
   Content content_;
   LightTrack light_;
   std::map<int, const FrameRecord*> records_;

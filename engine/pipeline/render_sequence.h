@@ -9,6 +9,7 @@
 
 #include "engine/pipeline/reconstruction.h"
 #include "engine/pipeline/track_sequence.h"
+#include "engine/scene/model_shelf.h"
 #include "engine/scene/object_record.h"
 #include "engine/scene/scene_file.h"
 #include "engine/sequence/sequence.h"
@@ -25,7 +26,8 @@ struct RenderSequenceOptions {
   bool only_opengl = false;      ///< layers are never drawn by the processor directly
   int threads = 2;               ///< changes no result
   std::uint64_t seed = 1;
-  int stills = 4;  ///< pictures kept for the report
+  int stills = 4;                ///< pictures kept for the report
+  ModelShelf* models = nullptr;  ///< where models that were read before are found
 };
 
 struct RenderSequenceResult {

@@ -82,8 +82,7 @@ int carrier_of(const SceneFile& scene, const SceneObject& object, std::size_t co
 
 }  // namespace
 
-void check_content(const SceneFile& scene, int first_frame, int end_frame) {
-  ModelShelf shelf;
+void check_content(const SceneFile& scene, int first_frame, int end_frame, ModelShelf& shelf) {
   for (const SceneObject& object : scene.objects) {
     ContentItem item;
     load_item(object, shelf, item);

@@ -37,14 +37,15 @@ struct Content {
 };
 
 /// What can be known before tracking: every model is readable and has its animation, every frame
-/// that is named lies in first..end-1. Throws UserError like load_content.
-void check_content(const SceneFile& scene, int first_frame, int end_frame);
+/// that is named lies in first..end-1. The models stay on the shelf. Throws UserError like
+/// load_content.
+void check_content(const SceneFile& scene, int first_frame, int end_frame, ModelShelf& shelf);
 
 /// Loads every model once and places every object, later ones beside earlier ones where they would
 /// overlap (unless the scene says otherwise). Throws UserError naming the file (and line) for a
 /// model that cannot be read, an animation it has not, and places that are not there.
 Content load_content(const PlacingWorld& world, const SceneFile& scene);
-/// The same with models that may have been read before.
+/// The same; models on the shelf are not read again.
 Content load_content(const PlacingWorld& world, const SceneFile& scene, ModelShelf& shelf);
 
 /// Where the objects are. Those whose plane is gone are left out.
