@@ -1,22 +1,16 @@
 #include "engine/pipeline/frames_ahead.h"
 
-#include "engine/user_error.h"
-
 namespace planecast::engine {
 
-void FramesAhead::request(int index, bool initialised) {
+void FramesAhead::request(bool initialised) {
   next_ = std::async(threaded_ ? std::launch::async : std::launch::deferred,
-                     [this, index, initialised] { return prepare(index, initialised); });
+                     [this, initialised] { return prepare(initialised); });
 }
 
-FramesAhead::Prepared FramesAhead::prepare(int index, bool initialised) const {
-  Prepared prepared;
-  try {
-    prepared.image = system_.prepare(sequence_.read(index), initialised);
-  } catch (const UserError& error) {
-    prepared.error = error.what();
-  }
-  return prepared;
+FramesAhead::Prepared FramesAhead::prepare(bool initialised) {
+  const ReadFrame read = reader_.next().value();
+  if (!read.error.empty()) return {std::nullopt, read.error};
+  return {system_.prepare(read.frame, initialised), ""};
 }
 
 }  // namespace planecast::engine

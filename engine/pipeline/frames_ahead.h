@@ -4,33 +4,35 @@
 #include <optional>
 #include <string>
 
-#include "engine/sequence/sequence.h"
+#include "engine/pipeline/picture_flow.h"
 #include "slam/system.h"
 
 namespace planecast::engine {
 
-/// Reads and prepares frames one ahead of the one in use, on a second thread where allowed. Whether
-/// the map was initialised is known two frames late, always, so that threads change nothing.
+/// Reads frames some ahead and prepares them one ahead of the one in use, on threads of their own
+/// where allowed. Whether the map was initialised is known two frames late, always, so that threads
+/// change nothing.
 class FramesAhead {
  public:
-  /// `sequence` and `system` outlive this.
-  FramesAhead(Sequence& sequence, const slam::System& system, bool threaded)
-      : sequence_(sequence), system_(system), threaded_(threaded) {}
+  /// For the frames begin, begin + step, ... before end. `sequence` and `system` outlive this.
+  FramesAhead(Sequence& sequence, const slam::System& system, int begin, int end, int step,
+              bool threaded)
+      : reader_(sequence, begin, end, threaded, step), system_(system), threaded_(threaded) {}
 
   struct Prepared {
     std::optional<slam::ImageFeatures> image;  ///< nothing: unreadable
     std::string error;
   };
 
-  /// Starts on the frame of the sequence with this index.
-  void request(int index, bool initialised);
+  /// Starts on the next frame; there must be one.
+  void request(bool initialised);
   /// The frame requested last; waits for it.
   Prepared take() { return next_.get(); }
 
  private:
-  Prepared prepare(int index, bool initialised) const;
+  Prepared prepare(bool initialised);
 
-  Sequence& sequence_;
+  FrameReader reader_;
   const slam::System& system_;
   bool threaded_;
   std::future<Prepared> next_;

@@ -22,8 +22,8 @@ ReadFrame read_frame(Sequence& sequence, int index) {
 
 }  // namespace
 
-FrameReader::FrameReader(Sequence& sequence, int begin, int end, bool threaded)
-    : sequence_(sequence), next_(begin), end_(end), queue_(kQueueLength) {
+FrameReader::FrameReader(Sequence& sequence, int begin, int end, bool threaded, int step)
+    : sequence_(sequence), next_(begin), end_(end), step_(step), queue_(kQueueLength) {
   if (threaded) thread_ = std::thread([this] { read_all(); });
 }
 
@@ -34,8 +34,10 @@ FrameReader::~FrameReader() {
 
 std::optional<ReadFrame> FrameReader::next() {
   if (!thread_.joinable()) {
-    if (next_ >= end_) return std::nullopt;
-    return read_frame(sequence_, next_++);
+    if (next_ == end_) return std::nullopt;
+    ReadFrame frame = read_frame(sequence_, next_);
+    next_ += step_;
+    return frame;
   }
   std::optional<ReadFrame> frame = queue_.pop();
   if (!frame && failure_) std::rethrow_exception(failure_);
@@ -44,7 +46,7 @@ std::optional<ReadFrame> FrameReader::next() {
 
 void FrameReader::read_all() {
   try {
-    for (; next_ < end_; ++next_) {
+    for (; next_ != end_; next_ += step_) {
       if (!queue_.push(read_frame(sequence_, next_))) break;
     }
   } catch (...) {

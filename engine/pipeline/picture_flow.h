@@ -19,10 +19,11 @@ struct ReadFrame {
   std::string error;  ///< why it could not be read; empty otherwise
 };
 
-/// Frames begin..end-1 in order, read ahead on a thread of its own when `threaded`.
+/// Frames begin, begin + step, ... before end, read ahead on a thread of its own when `threaded`.
 class FrameReader {
  public:
-  FrameReader(Sequence& sequence, int begin, int end, bool threaded);
+  /// `step` is 1 or -1.
+  FrameReader(Sequence& sequence, int begin, int end, bool threaded, int step = 1);
   ~FrameReader();
   FrameReader(const FrameReader&) = delete;
   FrameReader& operator=(const FrameReader&) = delete;
@@ -36,6 +37,7 @@ class FrameReader {
   Sequence& sequence_;
   int next_;
   int end_;
+  int step_;
   OrderedQueue<ReadFrame> queue_;
   std::exception_ptr failure_;  ///< written before close(), read after the last pop()
   std::thread thread_;

@@ -181,13 +181,13 @@ slam::Pose TwoPassTracker::new_from_old_world(int position) const {
 }
 
 void TwoPassTracker::first_pass() {
-  FramesAhead ahead(sequence_, system_, options_.threads > 1);
-  ahead.request(first_, system_.initialised());
+  FramesAhead ahead(sequence_, system_, first_, first_ + count_, 1, options_.threads > 1);
+  ahead.request(system_.initialised());
   for (int position = 0; position < count_; ++position) {
     if (cancel_requested()) return stop_before(position, kInterrupted);
     FramesAhead::Prepared prepared = ahead.take();
     const bool initialised = system_.initialised();
-    if (position + 1 < count_) ahead.request(first_ + position + 1, initialised);
+    if (position + 1 < count_) ahead.request(initialised);
     FrameRecord& record = frames_[static_cast<std::size_t>(position)];
     record.index = first_ + position;
     record.timestamp =
@@ -251,12 +251,12 @@ bool TwoPassTracker::localise_frame(int position, const std::optional<slam::Pose
 /// Localises the frames begin, begin + step, ... before end; those without a pose of their own
 /// start from the frame before them in this order.
 void TwoPassTracker::localise_run(int begin, int end, int step, int& done) {
-  FramesAhead ahead(sequence_, system_, options_.threads > 1);
-  if (begin != end) ahead.request(first_ + begin, true);
+  FramesAhead ahead(sequence_, system_, first_ + begin, first_ + end, step, options_.threads > 1);
+  if (begin != end) ahead.request(true);
   std::optional<slam::Pose> previous;
   for (int position = begin; position != end && !cancel_requested(); position += step) {
     FramesAhead::Prepared prepared = ahead.take();
-    if (position + step != end) ahead.request(first_ + position + step, true);
+    if (position + step != end) ahead.request(true);
     const FrameRecord& record = frames_[static_cast<std::size_t>(position)];
     std::optional<slam::Pose> prior = previous;
     if (record.world_from_cam) prior = record.world_from_cam->inverse();

@@ -56,6 +56,18 @@ TEST_P(PictureFlow, FramesComeInOrderAndBadOnesSayWhy) {
   EXPECT_FALSE(reader.next().has_value());
 }
 
+TEST_P(PictureFlow, FramesComeBackwardsToo) {
+  NumberedSequence sequence(7);
+  FrameReader reader(sequence, 9, 4, GetParam(), -1);
+  for (int index = 9; index > 4; --index) {
+    const std::optional<ReadFrame> frame = reader.next();
+    ASSERT_TRUE(frame.has_value());
+    EXPECT_EQ(frame->index, index);
+    EXPECT_EQ(frame->error.empty(), index != 7);
+  }
+  EXPECT_FALSE(reader.next().has_value());
+}
+
 TEST_P(PictureFlow, OtherFailuresArriveWhereFramesAreTaken) {
   NumberedSequence sequence(-1);
   FrameReader reader(sequence, 38, 50, GetParam());
