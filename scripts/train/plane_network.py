@@ -1,25 +1,47 @@
-"""The network of docs/segmentation.md: 192x144 RGB in, maps of half that size out."""
+"""The network of docs/segmentation.md: 192x144 RGB in, maps of a quarter of that size out."""
 import torch.nn.functional as F
 from torch import nn
 
 WIDTH, HEIGHT = 192, 144
-OUTPUTS = 9  # planarity and boundary (logits), normal (3), embedding (4)
+FINE = 3    # planarity, step to the right and step down (logits): four values a cell, 2x2 pixels
+COARSE = 7  # normal (3), embedding (4)
+OUTPUTS = 4 * FINE + COARSE
 
 
-def conv(inputs, outputs, stride=1, dilation=1, groups=1):
+def conv(inputs, outputs, size=3, stride=1, dilation=1, groups=1):
     return nn.Sequential(
-        nn.Conv2d(inputs, outputs, 3, stride, dilation, dilation, groups, bias=False),
+        nn.Conv2d(inputs, outputs, size, stride, size // 2 * dilation, dilation, groups, bias=False),
         nn.BatchNorm2d(outputs))
 
 
+def separable(inputs, outputs, stride=1):
+    return nn.Sequential(conv(inputs, inputs, stride=stride, groups=inputs), nn.ReLU(),
+                         conv(inputs, outputs, 1))
+
+
 class Residual(nn.Module):
-    def __init__(self, channels, dilation=1):
+    """Two separable convolutions: a sum costs as much as a depthwise convolution."""
+
+    def __init__(self, channels):
         super().__init__()
-        self.first = conv(channels, channels, dilation=dilation)
-        self.second = conv(channels, channels, dilation=dilation)
+        self.first = separable(channels, channels)
+        self.second = separable(channels, channels)
 
     def forward(self, x):
         return F.relu(x + self.second(F.relu(self.first(x))))
+
+
+class Bottleneck(nn.Module):
+    """Where a picture is 12 wide, OpenCV's depthwise convolutions are slow and full ones are not."""
+
+    def __init__(self, channels, inner, dilation):
+        super().__init__()
+        self.narrow = conv(channels, inner, 1)
+        self.look = conv(inner, inner, dilation=dilation)
+        self.widen = conv(inner, channels, 1)
+
+    def forward(self, x):
+        return F.relu(x + self.widen(F.relu(self.look(F.relu(self.narrow(x))))))
 
 
 def twice(x):
@@ -27,38 +49,38 @@ def twice(x):
 
 
 class PlaneNetwork(nn.Module):
-    """N x 3 x 144 x 192, RGB / 255 - 0.5 -> N x 9 x 72 x 96.
+    """N x 3 x 144 x 192, RGB / 255 - 0.5 -> N x 19 x 36 x 48.
 
-    Most of the depth is at a sixteenth of the size, where it costs least: a convolution at half
-    the size takes as long as five there."""
+    Nothing but the first convolution is computed at half the size: the fine maps come out as four
+    values a cell."""
 
-    def __init__(self, stem=12, quarter=24, eighth=48, sixteenth=64, decoder=24, last=12):
+    def __init__(self, stem=16, quarter=40, eighth=96, sixteenth=192, inner=64):
         super().__init__()
         self.stem = conv(3, stem, stride=2)
-        self.quarter = conv(stem, quarter, stride=2)
-        self.eighth = nn.Sequential(conv(quarter, eighth, stride=2), nn.ReLU(), Residual(eighth))
+        self.quarter = nn.Sequential(separable(stem, quarter, 2), nn.ReLU(),
+                                     separable(quarter, quarter), nn.ReLU())
+        self.eighth = nn.Sequential(separable(quarter, eighth, 2), nn.ReLU(),
+                                    Residual(eighth), Residual(eighth))
         self.sixteenth = nn.Sequential(
-            conv(eighth, sixteenth, stride=2), nn.ReLU(),
-            *[Residual(sixteenth, dilation) for dilation in (1, 2, 4, 1)])
-        self.whole = nn.Conv2d(sixteenth, decoder, 1)
-        self.from_sixteenth = nn.Conv2d(sixteenth, decoder, 1)
-        self.from_eighth = nn.Conv2d(eighth, decoder, 1)
-        self.from_quarter = nn.Conv2d(quarter, decoder, 1)
-        self.at_eighth = conv(decoder, decoder)
-        self.at_quarter = conv(decoder, decoder)
-        self.to_half = nn.Conv2d(decoder, last, 1)
-        self.from_stem = nn.Conv2d(stem, last, 1)
-        self.at_half = conv(last, last, groups=last)
-        self.head = nn.Conv2d(last, OUTPUTS, 1)
+            separable(eighth, sixteenth, 2), nn.ReLU(),
+            *[Bottleneck(sixteenth, inner, dilation) for dilation in (1, 2, 3, 1)])
+        self.whole = nn.Conv2d(sixteenth, eighth, 1)
+        self.from_sixteenth = conv(sixteenth, eighth, 1)
+        self.at_eighth = nn.Sequential(Residual(eighth), Residual(eighth))
+        self.from_eighth = conv(eighth, quarter, 1)
+        self.at_quarter = Residual(quarter)
+        self.head = nn.Conv2d(quarter, OUTPUTS, 1)
 
     def forward(self, rgb):
-        stem = F.relu(self.stem(rgb))
-        quarter = F.relu(self.quarter(stem))
+        quarter = self.quarter(F.relu(self.stem(rgb)))
         eighth = self.eighth(quarter)
-        sixteenth = self.sixteenth(eighth)
-        x = F.relu(self.from_sixteenth(sixteenth) + self.whole(F.adaptive_avg_pool2d(sixteenth, 1)))
-        x = F.relu(self.at_eighth(F.relu(twice(x) + self.from_eighth(eighth))))
-        x = F.relu(self.at_quarter(F.relu(twice(x) + self.from_quarter(quarter))))
-        x = F.relu(twice(self.to_half(x)) + self.from_stem(stem))
-        x = F.relu(self.at_half(x))
+        x = self.sixteenth(eighth)
+        x = self.from_sixteenth(x) + self.whole(F.adaptive_avg_pool2d(x, 1))
+        x = self.at_eighth(F.relu(twice(x) + eighth))
+        x = self.at_quarter(F.relu(twice(self.from_eighth(x)) + quarter))
         return self.head(x)
+
+
+def fine_maps(out):
+    """N x 3 x 2h x 2w: the values of each cell, row by row, as pixels."""
+    return F.pixel_shuffle(out[:, :4 * FINE], 2)

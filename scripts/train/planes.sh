@@ -32,14 +32,15 @@ train() {
 }
 # Pictures 128 wide first; then the whole size, at last with the rate falling to nothing.
 train --output "$work/1.pt" --shards "$work/train_0*.bin" --width 128 --steps 4000 --decay 0 --seed 1
-train --output "$work/2.pt" --start "$work/1.pt" --steps 14000 --decay 0 --seed 3
-train --output "$work/3.pt" --start "$work/2.pt" --steps 9000 --decay 1 --seed 5
-$python scripts/train/export_planes.py "$work/3.pt" assets/network/planes.onnx
+train --output "$work/2.pt" --start "$work/1.pt" --steps 8000 --decay 0 --seed 3
+train --output "$work/3.pt" --start "$work/2.pt" --steps 7000 --decay 1 --seed 5
+train --output "$work/4.pt" --start "$work/3.pt" --steps 5000 --decay 1 --rate 2e-3 --seed 7
+$python scripts/train/export_planes.py "$work/4.pt" assets/network/planes.onnx
 
 {
-  echo "Plane network, made by scripts/train/planes.sh"
+  echo "Plane network, made by scripts/train/planes.sh; log in training.txt"
   echo "training: $((shards * rooms_per_shard)) rooms (seeds from 0), $views views each, 192x144"
-  echo "steps of 8 pictures: 4000 at 128x96, then 14000 and 9000 (falling rate) at 192x144"
+  echo "steps of 8 pictures: 4000 at 128x96, then 8000, 7000 and 5000 (falling rate) at 192x144"
   for rooms in 20 500; do
     $tools/evaluate_planes assets/network/planes.onnx held-out $rooms | tail -1
   done

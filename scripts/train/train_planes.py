@@ -10,14 +10,15 @@ import numpy as np
 import torch
 import torch.nn.functional as F
 
-from plane_network import WIDTH, PlaneNetwork
+from plane_network import FINE, WIDTH, PlaneNetwork, fine_maps
 from plane_shards import INSTANCES, make_batch, open_shard
 
+STEP_WEIGHT = 4.0  # of a step against none, which is twenty times as frequent
 PULL = 0.25   # embeddings nearer than this to their instance's mean are left alone
 PUSH = 2.0    # means farther apart than this are left alone
 SHARDS_OPEN = 4
 # What is planar is learned last and counts most.
-WEIGHTS = {"planarity": 2.0, "boundary": 1.0, "normal": 0.5, "pull": 1.0, "push": 1.0,
+WEIGHTS = {"planarity": 2.0, "steps": 1.0, "normal": 0.5, "pull": 1.0, "push": 1.0,
            "spread": 0.001}
 
 
@@ -55,17 +56,20 @@ def forward(network, batch, half):
 
 
 def losses(out, batch):
-    planar, judged = batch["planar"], batch["judged"]
-    planarity = (F.binary_cross_entropy_with_logits(out[:, 0], planar, reduction="none") * judged)
-    boundary = F.binary_cross_entropy_with_logits(out[:, 1], batch["boundary"],
-                                                  pos_weight=torch.tensor(3.0))
-    cosine = F.cosine_similarity(out[:, 2:5], batch["normals"], dim=1)
-    normal = (2 * (1 - cosine) * planar).sum() / planar.sum().clamp(min=1)
-    # Every second row and column says enough of means, at a quarter of the time.
-    row, column = torch.randint(2, (2,)).tolist()
-    pull, push, spread = embedding_loss(out[:, 5:, row::2, column::2],
-                                        batch["instances"][:, row::2, column::2])
-    return {"planarity": planarity.sum() / judged.sum(), "boundary": boundary, "normal": normal,
+    fine, coarse = fine_maps(out), out[:, 4 * FINE:]
+    weight = batch["weight"]
+    planarity = F.binary_cross_entropy_with_logits(fine[:, 0], batch["planar"], weight)
+    # A step between pixels counts as much as the one of them that counts more.
+    beyond = torch.stack([F.pad(weight[:, :, 1:], (0, 1)), F.pad(weight[:, 1:], (0, 0, 0, 1))], 1)
+    of_step = torch.maximum(weight.unsqueeze(1), beyond)
+    steps = F.binary_cross_entropy_with_logits(fine[:, 1:], batch["steps"], of_step,
+                                               pos_weight=torch.tensor(STEP_WEIGHT))
+    oriented = batch["oriented"]
+    cosine = F.cosine_similarity(coarse[:, :3], batch["normals"], dim=1)
+    normal = (2 * (1 - cosine) * oriented).sum() / oriented.sum().clamp(min=1)
+    pull, push, spread = embedding_loss(coarse[:, 3:], batch["instances"])
+    scale = weight.numel() / weight.sum()
+    return {"planarity": planarity * scale, "steps": steps * scale, "normal": normal,
             "pull": pull, "push": push, "spread": spread}
 
 
@@ -102,8 +106,9 @@ def validate(network, path, batch=20):
             data = {k: torch.from_numpy(v) for k, v in data.items()}
             out = forward(network, data, False)
             values = losses(out, data)
-            values["accuracy"] = (((out[:, 0] > 0) == (data["planar"] > 0)) *
-                                  data["judged"]).sum() / data["judged"].sum()
+            judged = data["weight"] > 0
+            right = (fine_maps(out)[:, 0] > 0) == (data["planar"] > 0)
+            values["accuracy"] = (right & judged).sum() / judged.sum()
             for k, v in values.items():
                 sums[k] = sums.get(k, 0.0) + float(v) * min(batch, len(shard) - first)
     network.train()

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <opencv2/imgproc.hpp>
 #include <utility>
 #include <vector>
 
@@ -24,31 +25,31 @@ struct Step {
   int a = 0;
   int b = 0;
   float weight = 0.0F;
-  float boundary = 0.0F;
+  float probability = 0.0F;  ///< that it leaves an instance
 };
 
 /// All steps of the grid by rising weight, equal ones (to a 256th of the largest) in the order of
 /// the pixels.
-std::vector<Step> sorted_steps(const PlaneMaps& maps, const Values& boundary,
-                               float embedding_weight) {
-  const int cols = maps.cols;
-  const auto pixels = static_cast<Eigen::Index>(maps.rows) * cols;
+std::vector<Step> sorted_steps(const PlaneMaps& maps, float embedding_weight) {
+  const int cols = maps.cols();
+  const Eigen::Index pixels = maps.pixels();
   std::vector<Step> steps;
   steps.reserve(2 * static_cast<std::size_t>(pixels));
   float heaviest = 1e-6F;
   for (const int stride : {1, cols}) {
     const Eigen::Index count = pixels - stride;
     Values change = Values::Zero(count);
-    for (int c = 0; c < 4; ++c) {
-      const float* plane = maps.embedding + c * pixels;
+    for (int c = 0; c < PlaneMaps::kEmbedding; ++c) {
+      const float* plane = maps.embedding(c);
       change += (Map(plane + stride, count) - Map(plane, count)).square();
     }
-    const Values strength = boundary.head(count).max(boundary.tail(count));
-    const Values weight = strength + embedding_weight * change.sqrt();
+    const Values probability = sigmoid(stride == 1 ? maps.right() : maps.down(), count);
+    const Values weight = probability + embedding_weight * change.sqrt();
     for (Eigen::Index i = 0; i < count; ++i) {
       if (stride == 1 && (i + 1) % cols == 0) continue;
       heaviest = std::max(heaviest, weight[i]);
-      steps.push_back({static_cast<int>(i), static_cast<int>(i) + stride, weight[i], strength[i]});
+      steps.push_back(
+          {static_cast<int>(i), static_cast<int>(i) + stride, weight[i], probability[i]});
     }
   }
   constexpr int kBins = 256;
@@ -146,10 +147,10 @@ std::pair<std::vector<int>, int> number_groups(Groups& groups, int pixels) {
 std::vector<RegionSums> sum_regions(const PlaneMaps& maps, const std::vector<int>& region,
                                     int count) {
   const auto pixels = static_cast<Eigen::Index>(region.size());
-  const Values planarity = sigmoid(maps.planarity, pixels);
-  const Map nx(maps.normal, pixels);
-  const Map ny(maps.normal + pixels, pixels);
-  const Map nz(maps.normal + 2 * pixels, pixels);
+  const Values planarity = sigmoid(maps.planarity(), pixels);
+  const Map nx(maps.normal(0), pixels);
+  const Map ny(maps.normal(1), pixels);
+  const Map nz(maps.normal(2), pixels);
   const Values scale = (nx.square() + ny.square() + nz.square() + 1e-12F).rsqrt();
   std::vector<RegionSums> sums(static_cast<std::size_t>(count));
   for (Eigen::Index i = 0; i < pixels; ++i) {
@@ -159,8 +160,8 @@ std::vector<RegionSums> sum_regions(const PlaneMaps& maps, const std::vector<int
     sum.normal[0] += scale[i] * nx[i];
     sum.normal[1] += scale[i] * ny[i];
     sum.normal[2] += scale[i] * nz[i];
-    for (int c = 0; c < 4; ++c) {
-      sum.embedding[static_cast<std::size_t>(c)] += maps.embedding[c * pixels + i];
+    for (int c = 0; c < PlaneMaps::kEmbedding; ++c) {
+      sum.embedding[static_cast<std::size_t>(c)] += maps.embedding(c)[i];
     }
   }
   return sums;
@@ -217,28 +218,48 @@ std::vector<int> label_regions(const RegionGraph& graph, double pixels,
 
 }  // namespace
 
+PlaneMaps::PlaneMaps(int rows, int cols)
+    : rows_(rows),
+      cols_(cols),
+      values_(static_cast<std::size_t>(kFine + kCoarse) * static_cast<std::size_t>(rows * cols)) {}
+
 PlaneMaps PlaneMaps::of(const float* block, int rows, int cols) {
-  const std::ptrdiff_t pixels = static_cast<std::ptrdiff_t>(rows) * cols;
-  return {rows, cols, block, block + pixels, block + 2 * pixels, block + 5 * pixels};
+  PlaneMaps maps(rows, cols);
+  const int cell_rows = rows / 2;
+  const int cell_cols = cols / 2;
+  for (int index = 0; index < kFine; ++index) {
+    for (int corner = 0; corner < 4; ++corner) {
+      float* out = maps.plane(index) + corner / 2 * cols + corner % 2;
+      for (int y = 0; y < cell_rows; ++y, out += 2 * cols) {
+        for (int x = 0; x < cell_cols; ++x) out[2 * x] = *block++;
+      }
+    }
+  }
+  for (int index = kFine; index < kFine + kCoarse; ++index) {
+    const cv::Mat coarse(cell_rows, cell_cols, CV_32F, const_cast<float*>(block));
+    cv::Mat fine(rows, cols, CV_32F, maps.plane(index));
+    cv::resize(coarse, fine, fine.size(), 0, 0, cv::INTER_LINEAR);
+    block += cell_rows * cell_cols;
+  }
+  return maps;
 }
 
 cv::Mat decode_planes(const PlaneMaps& maps, const DecodeOptions& options) {
-  const int pixels = maps.rows * maps.cols;
-  const Values boundary = sigmoid(maps.boundary, pixels);
-  std::vector<Step> steps = sorted_steps(maps, boundary, options.embedding_weight);
+  const int pixels = maps.pixels();
+  std::vector<Step> steps = sorted_steps(maps, options.embedding_weight);
   Groups groups = group_pixels(pixels, steps, options);
   const auto [region, count] = number_groups(groups, pixels);
   RegionGraph graph(sum_regions(maps, region, count));
   for (const Step& step : steps) {
     const int a = region[static_cast<std::size_t>(step.a)];
     const int b = region[static_cast<std::size_t>(step.b)];
-    if (a != b) graph.add_border(a, b, step.boundary);
+    if (a != b) graph.add_border(a, b, step.probability);
   }
   graph.merge(options.costs);
   const std::vector<int> label_of = label_regions(graph, pixels, options);
-  cv::Mat labels(maps.rows, maps.cols, CV_16U);
+  cv::Mat labels(maps.rows(), maps.cols(), CV_16U);
   for (int i = 0; i < pixels; ++i) {
-    labels.at<ushort>(i / maps.cols, i % maps.cols) = static_cast<ushort>(
+    labels.at<ushort>(i / maps.cols(), i % maps.cols()) = static_cast<ushort>(
         label_of[static_cast<std::size_t>(region[static_cast<std::size_t>(i)])]);
   }
   return labels;

@@ -109,7 +109,7 @@ class NetworkSegmenter : public PlaneSegmenter {
       throw std::runtime_error("the output has " + std::to_string(slices(blob)) +
                                " channels instead of " + std::to_string(PlaneMaps::kChannels));
     }
-    const PlaneMaps maps = PlaneMaps::of(blob.ptr<float>(), blob.size[2], blob.size[3]);
+    const PlaneMaps maps = PlaneMaps::of(blob.ptr<float>(), 2 * blob.size[2], 2 * blob.size[3]);
     return decode_planes(maps, description_.decode);
   }
 

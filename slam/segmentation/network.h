@@ -16,7 +16,7 @@ struct NetworkDescription {
   std::string name;  ///< with `version`, for the record
   std::string version;
   enum class Kind {
-    kMaps,       ///< one output of 9 channels: planarity, boundary, normal (3), embedding (4)
+    kMaps,       ///< one output of PlaneMaps::kChannels
     kInstances,  ///< masks and scores of instances, as of PlaneRecNet
   };
   Kind kind = Kind::kMaps;

@@ -46,9 +46,9 @@ RegionGraph::RegionGraph(std::vector<RegionSums> regions)
   std::iota(parent_.begin(), parent_.end(), 0);
 }
 
-void RegionGraph::add_border(int a, int b, float boundary) {
+void RegionGraph::add_border(int a, int b, float probability) {
   for (Border* one : {&border(a, b), &border(b, a)}) {
-    one->boundary += boundary;
+    one->probability += probability;
     one->steps += 1.0F;
   }
 }
@@ -63,7 +63,8 @@ int RegionGraph::root(int region) const {
 float RegionGraph::cost(int a, int b, const MergeCosts& costs) {
   const RegionSums& p = sums(a);
   const RegionSums& q = sums(b);
-  return border(a, b).boundary / border(a, b).steps + costs.embedding * RegionSums::distance(p, q) +
+  return border(a, b).probability / border(a, b).steps +
+         costs.embedding * RegionSums::distance(p, q) +
          costs.normal * (1.0F - RegionSums::cosine(p, q)) +
          costs.planarity * std::abs(p.planarity / p.pixels - q.planarity / q.pixels);
 }
@@ -78,7 +79,7 @@ void RegionGraph::unite(int kept, int gone) {
     Border& moved = border(gone, other);
     if (moved.steps == 0.0F) continue;
     for (Border* one : {&border(kept, other), &border(other, kept)}) {
-      one->boundary += moved.boundary;
+      one->probability += moved.probability;
       one->steps += moved.steps;
     }
     border(other, gone) = {};

@@ -20,21 +20,21 @@ struct RegionSums {
   static float cosine(const RegionSums& a, const RegionSums& b);
 };
 
-/// What it costs to take two neighbouring regions for one: the mean boundary probability along
+/// What it costs to take two neighbouring regions for one: the mean probability of a step across
 /// their border and how much they differ, weighted.
 struct MergeCosts {
-  float embedding = 0.3F;  ///< per unit of distance
-  float normal = 0.5F;     ///< per 1 - cosine
-  float planarity = 0.5F;  ///< per difference of the mean probabilities
-  float most = 1.0F;       ///< that is paid
+  float embedding = 0.45F;  ///< per unit of distance
+  float normal = 0.5F;      ///< per 1 - cosine
+  float planarity = 0.6F;   ///< per difference of the mean probabilities
+  float most = 1.0F;        ///< that is paid
 };
 
 /// Regions and the borders between them; merges the cheapest pair until none is cheap enough.
 class RegionGraph {
  public:
   explicit RegionGraph(std::vector<RegionSums> regions);
-  /// One step of the border between regions a and b.
-  void add_border(int a, int b, float boundary);
+  /// One step of the border between regions a and b, and how likely it leaves an instance.
+  void add_border(int a, int b, float probability);
   void merge(const MergeCosts& costs);
   /// The region that `region` has become part of.
   int root(int region) const;
@@ -43,7 +43,7 @@ class RegionGraph {
 
  private:
   struct Border {
-    float boundary = 0.0F;
+    float probability = 0.0F;  ///< summed over the steps
     float steps = 0.0F;
   };
   Border& border(int a, int b) {

@@ -143,7 +143,7 @@ TEST(ChooseSegmenter, AutoTakesMasksThenDepthThenNone) {
 TEST(MaskFolder, WritesMasksListAndOverlays) {
   const fs::path folder = fs::path(::testing::TempDir()) / "mask_folder";
   fs::remove_all(folder);
-  MaskFolder masks(folder, "network planes 1", true);
+  MaskFolder masks(folder, "network planes 2", true);
   const cv::Mat image(12, 16, CV_8U, cv::Scalar(100));
   cv::Mat labels = cv::Mat::zeros(12, 16, CV_16U);
   labels(cv::Rect(4, 4, 8, 8)).setTo(3);
@@ -158,7 +158,7 @@ TEST(MaskFolder, WritesMasksListAndOverlays) {
   EXPECT_NE(overlay.at<cv::Vec3b>(7, 7), cv::Vec3b(100, 100, 100));
   std::ifstream list(folder / "mask.txt");
   std::string text{std::istreambuf_iterator<char>(list), {}};
-  EXPECT_NE(text.find("by network planes 1"), std::string::npos);
+  EXPECT_NE(text.find("by network planes 2"), std::string::npos);
   EXPECT_NE(text.find("1.500000 mask/000007.png"), std::string::npos) << text;
 }
 
