@@ -71,12 +71,9 @@ FramePainter::FramePainter(const Reconstruction& reconstruction, const Content& 
       options_(options),
       light_(light),
       warp_(drawing_camera(reconstruction.camera, options.look.lens)),
-      grain_(options.seed),
-      placed_(std::in_place, reconstruction, content, options.placing),
-      shadow_map_size_(shadow_map_size(reconstruction, *placed_, options.placing.causal)),
-      renderer_(renderer_options(options, shadow_map_size_)) {
+      grain_(options.seed) {
+  set_content(content);
   scene_.light.sun.casts_shadow = options.placing.shadows;
-  scene_.light.sun.softness = kShadowSoftness * static_cast<float>(shadow_map_size_);
   // Live, the map and what is known of the light change from frame to frame.
   scene_.still = !options.placing.causal;
 }
@@ -93,6 +90,11 @@ void FramePainter::set_light(const SceneLight& light) {
 
 void FramePainter::set_content(const Content& content) {
   placed_.emplace(reconstruction_, content, options_.placing);
+  const int size = shadow_map_size(reconstruction_, *placed_, options_.placing.causal);
+  if (size == shadow_map_size_) return;
+  shadow_map_size_ = size;
+  renderer_.emplace(renderer_options(options_, size));
+  scene_.light.sun.softness = kShadowSoftness * static_cast<float>(size);
 }
 
 void FramePainter::set_depth(const slam::FrameInput& frame, const slam::Pose& world_from_cam) {
@@ -133,7 +135,7 @@ bool FramePainter::paint(const slam::FrameInput& frame, const slam::Pose& world_
   camera.far_plane = static_cast<float>(kFarShare * reconstruction_.median_depth);
   times_.look_ms = watch.lap_ms();
 
-  render::Layer drawn = renderer_.draw_layer(scene_, camera);
+  render::Layer drawn = renderer_->draw_layer(scene_, camera);
   by_processor_ = drawn.by_processor;
   ObjectLayer layer = view_layer(drawn);
   times_.draw_ms = watch.lap_ms();

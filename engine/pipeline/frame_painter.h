@@ -42,7 +42,8 @@ class FramePainter {
   FramePainter(const Reconstruction& reconstruction, const Content& content,
                const LightTrack& light, const PainterOptions& options);
 
-  /// Draws other content from now on; models that stay are kept.
+  /// Draws other content from now on. Models that stay are kept, unless the content is now seen so
+  /// much larger or smaller that its shadows need another map.
   void set_content(const Content& content);
 
   /// Returns whether anything was drawn. `frame.image` stays as it is; `picture` is CV_8UC3 BGR and
@@ -52,7 +53,7 @@ class FramePainter {
   const PaintTimes& times() const { return times_; }
   /// Whether the last layer was drawn without OpenGL.
   bool by_processor() const { return by_processor_; }
-  std::string renderer_description() const { return renderer_.description(); }
+  std::string renderer_description() const { return renderer_->description(); }
 
  private:
   void set_light(const SceneLight& light);
@@ -64,8 +65,8 @@ class FramePainter {
   LensWarp warp_;
   Grain grain_;
   std::optional<PlacedScene> placed_;
-  int shadow_map_size_;
-  render::Renderer renderer_;
+  int shadow_map_size_ = 0;
+  std::optional<render::Renderer> renderer_;  ///< made for shadow_map_size_
   render::LayerScene scene_;
   render::ImageF depth_;
   PaintTimes times_;

@@ -15,8 +15,8 @@ namespace planecast::engine {
 class FramesAhead {
  public:
   /// For the frames begin, begin + step, ... before end. `sequence` and `system` outlive this.
-  FramesAhead(Sequence& sequence, const slam::System& system, int begin, int end, int step,
-              bool threaded)
+  FramesAhead(Sequence& sequence, const slam::System& system, int begin, int end, bool threaded,
+              int step)
       : reader_(sequence, begin, end, threaded, step), system_(system), threaded_(threaded) {}
 
   struct Prepared {

@@ -181,7 +181,7 @@ slam::Pose TwoPassTracker::new_from_old_world(int position) const {
 }
 
 void TwoPassTracker::first_pass() {
-  FramesAhead ahead(sequence_, system_, first_, first_ + count_, 1, options_.threads > 1);
+  FramesAhead ahead(sequence_, system_, first_, first_ + count_, options_.threads > 1, 1);
   ahead.request(system_.initialised());
   for (int position = 0; position < count_; ++position) {
     if (cancel_requested()) return stop_before(position, kInterrupted);
@@ -251,7 +251,7 @@ bool TwoPassTracker::localise_frame(int position, const std::optional<slam::Pose
 /// Localises the frames begin, begin + step, ... before end; those without a pose of their own
 /// start from the frame before them in this order.
 void TwoPassTracker::localise_run(int begin, int end, int step, int& done) {
-  FramesAhead ahead(sequence_, system_, first_ + begin, first_ + end, step, options_.threads > 1);
+  FramesAhead ahead(sequence_, system_, first_ + begin, first_ + end, options_.threads > 1, step);
   if (begin != end) ahead.request(true);
   std::optional<slam::Pose> previous;
   for (int position = begin; position != end && !cancel_requested(); position += step) {

@@ -26,9 +26,11 @@ for i in $(seq 0 $((shards - 1))); do
   shard "$(printf 'train_%02d' "$i")" $((i * rooms_per_shard)) $rooms_per_shard $views "$i"
 done
 
+log=$work/training.log
+: >"$log"
 train() {
   $python scripts/train/train_planes.py --shards "$work/train_*.bin" \
-    --validation "$work/validation.bin" --batch 8 "$@"
+    --validation "$work/validation.bin" --batch 8 "$@" | tee -a "$log"
 }
 # Pictures 128 wide first; then the whole size, at last with the rate falling to nothing.
 train --output "$work/1.pt" --shards "$work/train_0*.bin" --width 128 --steps 4000 --decay 0 --seed 1
@@ -36,6 +38,7 @@ train --output "$work/2.pt" --start "$work/1.pt" --steps 8000 --decay 0 --seed 3
 train --output "$work/3.pt" --start "$work/2.pt" --steps 7000 --decay 1 --seed 5
 train --output "$work/4.pt" --start "$work/3.pt" --steps 5000 --decay 1 --rate 2e-3 --seed 7
 $python scripts/train/export_planes.py "$work/4.pt" assets/network/planes.onnx
+grep -E '^(seed |[0-9]*[05]00 )' "$log" >assets/network/training.txt
 
 {
   echo "Plane network, made by scripts/train/planes.sh; log in training.txt"

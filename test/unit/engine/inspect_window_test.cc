@@ -136,6 +136,19 @@ TEST_F(Window, PlayingGoesRoundAtTheSequencesSpeed) {
   EXPECT_EQ(session_.position(), 0);
 }
 
+TEST(FramePictures, AnObjectThatGrewLooksAsOneThatWasAlwaysSoLarge) {
+  const TestFolder folder;
+  InspectSession session(table_world(), {}, folder / "scene.yaml", {asset("models/block.glb")});
+  ASSERT_TRUE(session.place({320.0, 400.0})) << session.message();
+  ASSERT_TRUE(session.set_size(0.05)) << session.message();
+  FramePictures frames(session, nullptr);
+  const cv::Mat small = frames.picture(true).clone();
+  ASSERT_TRUE(session.set_size(0.5)) << session.message();
+  FramePictures fresh(session, nullptr);
+  EXPECT_GT(cv::norm(frames.picture(true), small, cv::NORM_INF), 20.0);
+  EXPECT_EQ(cv::norm(frames.picture(true), fresh.picture(true), cv::NORM_INF), 0.0);
+}
+
 TEST(Screen, SameSessionSamePicture) {
   const TestFolder folder;
   cv::Mat pictures[2];
