@@ -19,6 +19,7 @@ struct Keyframe {
   std::vector<LandmarkId> landmarks;            ///< per keypoint; kNone where there is none
   std::vector<int> labels;  ///< per keypoint: plane instance mask label, 0 = none
   cv::Mat depth;            ///< CV_32F metres, raw pixels; only while the keyframe is being mapped
+  cv::Mat nearest_depth;    ///< CV_32F metres, the least of each block of raw pixels; may be empty
   cv::Mat label_image;      ///< CV_16U plane instances, raw pixels; only while it is being mapped
   KeyframeId parent = kNone;  ///< spanning tree
   /// What one unit of length measured from this keyframe at its insertion is worth in the map now:

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "slam/features/matching.h"
+#include "slam/geometry/lens.h"
 #include "slam/optimize/pose.h"
 
 namespace planecast::slam {
@@ -52,6 +53,22 @@ std::vector<LandmarkId> supporting_landmarks(const PoseEstimate& estimate) {
   return landmarks;
 }
 
+namespace {
+
+/// Whether something nearer stands, clearly, before a landmark.
+bool is_hidden(const Landmark& landmark, const Camera& camera, const Pose& cam_from_world,
+               const cv::Mat& depth) {
+  constexpr double kClearly = 0.9;
+  const Eigen::Vector3d point = cam_from_world * landmark.position;
+  const Eigen::Vector2d raw = project_raw(camera, point);
+  const cv::Point pixel(cvRound(raw.x()), cvRound(raw.y()));
+  if (!cv::Rect(cv::Point(), depth.size()).contains(pixel)) return false;
+  const auto seen = static_cast<double>(depth.at<float>(pixel));
+  return seen > 0.0 && seen < kClearly * point.z();
+}
+
+}  // namespace
+
 std::optional<PoseEstimate> localise_by_patches(const Map& map, const Camera& camera,
                                                 const ImageFeatures& image,
                                                 const Pose& guess_cam_from_world,
@@ -59,6 +76,11 @@ std::optional<PoseEstimate> localise_by_patches(const Map& map, const Camera& ca
                                                 const LocaliseByPatchesOptions& options) {
   PatchMatches found =
       match_patches(map, camera, *image.pyramid, guess_cam_from_world, candidates, options.match);
+  if (!image.depth.empty()) {
+    std::erase_if(found.tried, [&](LandmarkId id) {
+      return is_hidden(map.landmarks.at(id), camera, guess_cam_from_world, image.depth);
+    });
+  }
   const auto least = std::max(static_cast<double>(options.min_inliers),
                               options.min_share * static_cast<double>(found.tried.size()));
   if (static_cast<double>(found.matches.size()) < least) return std::nullopt;

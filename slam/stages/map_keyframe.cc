@@ -37,6 +37,22 @@ void follow(const Map& map, PoseEstimate& estimate) {
   std::erase_if(estimate.patches, [](const PatchMatch& patch) { return patch.landmark == kNone; });
 }
 
+/// Takes the keypoints that move, and match no landmark, out of an image's features.
+void drop_moving(const Camera& camera, ImageFeatures& image, std::vector<LandmarkId>& matches) {
+  const Features& all = *image.features;
+  auto kept = std::make_shared<Features>();
+  std::vector<LandmarkId> kept_matches;
+  for (std::size_t k = 0; k < all.keypoints.size(); ++k) {
+    if (matches[k] == kNone && image.moves_at(all.keypoints[k].raw)) continue;
+    kept->keypoints.push_back(all.keypoints[k]);
+    kept->descriptors.push_back(all.descriptors[k]);
+    kept_matches.push_back(matches[k]);
+  }
+  kept->build_grid(camera.width, camera.height);
+  image.features = std::move(kept);
+  matches = std::move(kept_matches);
+}
+
 /// Nobody looks at a keyframe's depth and masks again once its planes are mapped, and they are most
 /// of its memory.
 void release_images(Keyframe& keyframe) {
@@ -77,6 +93,10 @@ void KeyframeMapper::segment(const ImageFeatures& image, Keyframe& keyframe, Sta
 
 KeyframeReport KeyframeMapper::start(Map& map, const std::vector<ImageFeatures>& images) {
   KeyframeReport report;
+  for (Keyframe& keyframe : map.keyframes) {
+    if (keyframe.depth.empty()) continue;
+    keyframe.nearest_depth = nearest_depths(keyframe.depth, options_.free_space);
+  }
   if (!options_.map_planes) return report;
   std::size_t next = 0;
   for (Keyframe& keyframe : map.keyframes) {
@@ -93,10 +113,25 @@ KeyframeReport KeyframeMapper::start(Map& map, const std::vector<ImageFeatures>&
   return report;
 }
 
+void KeyframeMapper::leave_out_moving(const Map& map, KeyframeJob& job) const {
+  if (job.image.depth.empty()) return;
+  const KeyframeId reference = map.living_ancestor(job.reference);
+  std::vector<KeyframeId> asked =
+      best_neighbours(map, reference, static_cast<std::size_t>(options_.free_space.neighbours));
+  asked.push_back(reference);
+  job.image.moving = moving_parts(job.image.depth, job.estimate.cam_from_world, map, asked, camera_,
+                                  options_.free_space);
+  if (job.image.moving.empty()) return;
+  job.image.depth = job.image.depth.clone();
+  job.image.depth.setTo(0.0, job.image.moving);
+  if (job.image.features != nullptr) drop_moving(camera_, job.image, job.estimate.matches);
+}
+
 KeyframeId KeyframeMapper::put_keyframe(Map& map, KeyframeJob& job, StageTimes& times) {
   // The map may have moved since the tracker saw it: the pose goes along with its reference.
   job.estimate.cam_from_world = map.from_keyframe(job.cam_from_reference, job.reference);
   follow(map, job.estimate);
+  leave_out_moving(map, job);
   if (job.image.features == nullptr) {
     Stopwatch watch;
     job.estimate =
@@ -107,6 +142,9 @@ KeyframeId KeyframeMapper::put_keyframe(Map& map, KeyframeJob& job, StageTimes& 
   const KeyframeId id = keyframe.id;
   keyframe.parent = map.living_ancestor(job.reference);
   if (options_.map_planes) segment(job.image, keyframe, times);
+  if (!keyframe.depth.empty()) {
+    keyframe.nearest_depth = nearest_depths(keyframe.depth, options_.free_space);
+  }
   map.keyframes.put(std::move(keyframe));
   for (std::size_t k = 0; k < job.estimate.matches.size(); ++k) {
     const LandmarkId landmark = job.estimate.matches[k];

@@ -10,6 +10,7 @@
 #include "slam/optimize/bundle.h"
 #include "slam/segmentation/plane_segmenter.h"
 #include "slam/stages/describe_keyframe.h"
+#include "slam/stages/free_space.h"
 #include "slam/stages/initialise.h"
 #include "slam/stages/localise.h"
 #include "slam/stages/map_planes.h"
@@ -25,6 +26,7 @@ struct KeyframeMapperOptions {
   bool rgbd = false;
   bool map_planes = true;
   PrepareOptions prepare;
+  FreeSpaceOptions free_space;
   DescribeKeyframeOptions describe;
   bool search_by_patches = true;  ///< new landmarks by search_points, else by descriptors
   SearchPointsOptions search;
@@ -70,6 +72,8 @@ class KeyframeMapper {
   void reset();
 
  private:
+  /// Leaves out of the image's depth and features what came where earlier keyframes saw through.
+  void leave_out_moving(const Map& map, KeyframeJob& job) const;
   KeyframeId put_keyframe(Map& map, KeyframeJob& job, StageTimes& times);
   void create_points(Map& map, KeyframeId id, const ImageFeatures& image, PointMappingStats& stats,
                      StageTimes& times);

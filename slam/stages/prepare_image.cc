@@ -25,6 +25,13 @@ float depth_at(const cv::Mat& depth, const Eigen::Vector2f& raw, double max_dept
   return centre;
 }
 
+bool ImageFeatures::moves_at(const Eigen::Vector2f& raw) const {
+  const cv::Point pixel(static_cast<int>(std::lround(raw.x())),
+                        static_cast<int>(std::lround(raw.y())));
+  return !moving.empty() && cv::Rect(cv::Point(), moving.size()).contains(pixel) &&
+         moving.at<uchar>(pixel) != 0;
+}
+
 ImagePreparer::ImagePreparer(const PrepareOptions& options, const Camera& camera)
     : options_(options), camera_(camera), extractor_(options.orb) {}
 
@@ -44,7 +51,12 @@ ImageFeatures ImagePreparer::read(const FrameInput& frame) const {
 }
 
 Features ImagePreparer::detect(const ImageFeatures& image, int limit) {
-  return extractor_.detect(image.pyramid->levels.front(), camera_, limit);
+  Features features = extractor_.detect(image.pyramid->levels.front(), camera_, limit);
+  if (!image.moving.empty()) {
+    std::erase_if(features.keypoints, [&](const Keypoint& k) { return image.moves_at(k.raw); });
+    features.build_grid(camera_.width, camera_.height);
+  }
+  return features;
 }
 
 void ImagePreparer::add_depth(const ImageFeatures& image, Features& features) const {

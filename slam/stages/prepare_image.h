@@ -25,7 +25,10 @@ struct ImageFeatures {
   cv::Mat grey_or_bgr;
   cv::Mat depth;  ///< RGB-D only
   cv::Mat labels;
+  cv::Mat moving;           ///< CV_8U, raw pixels, not 0 on what moves; empty where nothing does
   double prepare_ms = 0.0;  ///< counts as tracking; for the record only
+
+  bool moves_at(const Eigen::Vector2f& raw) const;
 };
 
 /// Depth at a raw pixel; 0 where there is none, where it is beyond `max_depth_m` and where the 3x3
@@ -41,7 +44,8 @@ class ImagePreparer {
   ImageFeatures read(const FrameInput& frame) const;
   /// ORB features with depth; `limit` as in OrbExtractor::extract.
   void extract(ImageFeatures& image, int limit = 0);
-  /// Corners that are not described yet, for more to be added by OrbExtractor::append.
+  /// Corners on what does not move, not described yet, for more to be added by
+  /// OrbExtractor::append.
   Features detect(const ImageFeatures& image, int limit = 0);
   void add_depth(const ImageFeatures& image, Features& features) const;
   OrbExtractor& extractor() { return extractor_; }
