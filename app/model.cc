@@ -95,8 +95,12 @@ struct ModelCommand {
   }
 
   int find_animation(const render::Model& model) const {
-    if (animation.empty()) return -1;
     const std::vector<std::string> names = render::animation_names(model);
+    if (animation.empty()) {
+      if (turntable.time_s == 0.0) return -1;
+      if (names.empty()) throw engine::UserError(file + ": no animation for --time");
+      return 0;
+    }
     const auto found = std::ranges::find(names, animation);
     if (found != names.end()) return static_cast<int>(found - names.begin());
     // Many files leave their animations without names.
@@ -127,7 +131,9 @@ void add_model(CLI::App& app, Action& action) {
       ->add_option("--animation", options->animation,
                    "Name or number of an animation to pose it by")
       ->type_name("NAME|N");
-  command->add_option("--time", options->turntable.time_s, "Seconds into the animation")
+  command
+      ->add_option("--time", options->turntable.time_s,
+                   "Seconds into the animation, without --animation the first")
       ->type_name("N")
       ->capture_default_str();
   command->add_flag("--list", options->list, "Say what the file contains");

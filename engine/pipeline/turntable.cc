@@ -85,10 +85,23 @@ struct Stage {
   double floor_y = 0.0;
 };
 
-Stage stage_of(const render::Model& model) {
-  const render::Bounds bounds = render::model_bounds(model);
-  const Eigen::Vector3d low(bounds.min.x, bounds.min.y, bounds.min.z);
-  const Eigen::Vector3d high(bounds.max.x, bounds.max.y, bounds.max.z);
+/// Of the rest pose, or of all that the animation reaches, so that the pictures of its moments fit
+/// together.
+Stage stage_of(const render::Model& model, const TurntableOptions& options) {
+  const auto bounds_at = [&](double time_s) {
+    return render::pose_bounds(
+        model, render::evaluate_pose(model, options.animation, static_cast<float>(time_s)));
+  };
+  render::Box box = bounds_at(options.time_s);
+  constexpr int kMoments = 16;
+  const double duration_s = double{render::animation_duration_s(model, options.animation)};
+  for (int i = 0; i <= kMoments && duration_s > 0.0; ++i) {
+    const render::Box moment = bounds_at(duration_s * i / kMoments);
+    box.min = glm::min(box.min, moment.min);
+    box.max = glm::max(box.max, moment.max);
+  }
+  const Eigen::Vector3d low(box.min.x, box.min.y, box.min.z);
+  const Eigen::Vector3d high(box.max.x, box.max.y, box.max.z);
   return {0.5 * (low + high), std::max(0.5 * (high - low).norm(), 1e-6), low.y()};
 }
 
@@ -157,7 +170,7 @@ bool has_camera(const render::Model& model, int camera) {
 
 cv::Mat draw_turntable(const std::shared_ptr<const render::Model>& model,
                        const TurntableOptions& options) {
-  const Stage stage = stage_of(*model);
+  const Stage stage = stage_of(*model, options);
   render::LayerScene scene;
   render::Instance instance;
   instance.model = model;
