@@ -18,6 +18,7 @@
 #include "slam/stages/close_loops.h"
 #include "slam/stages/initialise.h"
 #include "slam/stages/map_keyframe.h"
+#include "slam/stages/refine_sights.h"
 #include "slam/stages/track.h"
 
 namespace planecast::slam {
@@ -67,6 +68,7 @@ struct FrameTrack {
 struct FinishResult {
   StageTimes mapping_times;  ///< of keyframes that were still in flight, one after the other
   bool loop_closed = false;  ///< one that was still being closed
+  RefineSightsResult sights;
   BundleResult global;
   JointResult joint;
 };
@@ -99,8 +101,8 @@ class System {
   FrameTrack track(ImageFeatures image);
   bool initialised() const { return !map().keyframes.empty(); }
 
-  /// Global bundle adjustment (with the focal length where it was guessed), planes after it, and
-  /// the joint refinement.
+  /// All sights aligned anew, global bundle adjustment (with the focal length where it was
+  /// guessed), planes after it, and the joint refinement.
   FinishResult finish();
   /// Pose of a frame in the finished map; from the prior if that is near enough, else by
   /// relocalisation.

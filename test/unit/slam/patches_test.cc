@@ -9,6 +9,7 @@
 #include "slam/geometry/lens.h"
 #include "slam/stages/align_frame.h"
 #include "slam/stages/match_patches.h"
+#include "slam/stages/refine_sights.h"
 #include "test/unit/slam/synthetic_views.h"
 #include "test/unit/slam/textured_plane.h"
 
@@ -213,6 +214,73 @@ TEST(MatchPatches, WorksInRawPixelsOfADistortedLens) {
   Camera camera = test_camera();
   camera.distortion = {-0.25, 0.08, 0.001, -0.0005, 0.0};
   expect_precise_matches(camera);
+}
+
+/// Sees all landmarks of a map_of_plane(), each keypoint `off` by as much, to either side in turn.
+void add_view(Map& map, const Camera& camera, const Pose& cam_from_world,
+              const Eigen::Vector2f& off) {
+  Keyframe keyframe;
+  keyframe.id = map.keyframes.next_id();
+  keyframe.cam_from_world = cam_from_world;
+  keyframe.pyramid = std::make_shared<const ImagePyramid>(
+      build_pyramid(render_plane(camera, cam_from_world, kDepth)));
+  auto features = std::make_shared<Features>(*map.keyframes.at(0).features);
+  for (const Landmark& landmark : map.landmarks) {
+    Keypoint& keypoint = features->keypoints[static_cast<std::size_t>(landmark.id)];
+    const Eigen::Vector2d raw = project_raw(camera, cam_from_world * landmark.position);
+    keypoint.raw = raw.cast<float>() + (landmark.id % 2 == 0 ? off : Eigen::Vector2f(-off));
+    keypoint.pixel = camera.undistort(keypoint.raw.cast<double>()).cast<float>();
+  }
+  keyframe.landmarks.assign(features->keypoints.size(), kNone);
+  keyframe.labels.assign(features->keypoints.size(), 0);
+  keyframe.features = features;
+  const KeyframeId id = keyframe.id;
+  map.keyframes.put(std::move(keyframe));
+  for (LandmarkId landmark = 0; landmark < map.landmarks.next_id(); ++landmark) {
+    map.add_observation(landmark, id, landmark);
+  }
+}
+
+double mean_error_px(const Map& map, const Camera& camera, KeyframeId id) {
+  const Keyframe& keyframe = map.keyframes.at(id);
+  double sum = 0.0;
+  for (const Landmark& landmark : map.landmarks) {
+    const Keypoint& keypoint = keyframe.features->keypoints[static_cast<std::size_t>(landmark.id)];
+    const Eigen::Vector2d truth = project_raw(camera, keyframe.cam_from_world * landmark.position);
+    sum += (keypoint.raw.cast<double>() - truth).norm();
+  }
+  return sum / static_cast<double>(map.landmarks.size());
+}
+
+TEST(RefineSights, PutsEachSightWhereTheMiddleOneIs) {
+  Camera camera = test_camera();
+  camera.distortion = {-0.1, 0.02, 0.0, 0.0, 0.0};
+  Map map = map_of_plane(camera, render_plane(camera, Pose::Identity(), kDepth));
+  add_view(map, camera, pose_at({-0.08, 0.02, 0.03}, {0.0, 0.03, 0.02}), {0.7F, -0.4F});
+  add_view(map, camera, pose_at({0.08, -0.02, 0.02}, {0.01, -0.03, 0.0}), {-0.5F, 0.6F});
+  const std::shared_ptr<const Features> before = map.keyframes.at(1).features;
+  const RefineSightsResult result = refine_sights(map, camera, {});
+  EXPECT_GT(result.refined, 9 * result.kept);
+  for (const KeyframeId id : {1, 2}) {
+    EXPECT_LT(mean_error_px(map, camera, id), 2.0 * kPatchTolerancePx + 0.8 * 0.1)
+        << "a tenth at most, those near the rim, stay where they were";
+    const Keypoint& keypoint = map.keyframes.at(id).features->keypoints[40];
+    EXPECT_LT(
+        (camera.undistort(keypoint.raw.cast<double>()) - keypoint.pixel.cast<double>()).norm(),
+        1e-3);
+  }
+  EXPECT_LT(mean_error_px(map, camera, 0), 1e-4) << "the reference stays";
+  EXPECT_NE(map.keyframes.at(1).features, before) << "other copies of the map keep theirs";
+}
+
+TEST(RefineSights, NeedsImages) {
+  const Camera camera = test_camera();
+  Map map = map_of_plane(camera, render_plane(camera, Pose::Identity(), kDepth));
+  add_view(map, camera, pose_at({-0.08, 0.02, 0.03}, {0.0, 0.03, 0.02}), {0.7F, -0.4F});
+  map.keyframes.at(1).pyramid = nullptr;
+  const double error = mean_error_px(map, camera, 1);
+  refine_sights(map, camera, {});
+  EXPECT_EQ(mean_error_px(map, camera, 1), error);
 }
 
 }  // namespace
