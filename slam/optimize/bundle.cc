@@ -68,12 +68,16 @@ int solve(BundleProblem& problem, const Schedule& schedule, bool robust) {
   options.refine_focal = schedule.refine_focal;
   options.focal_sigma = schedule.focal_sigma;
   options.iterations = iterations;
-  options.robust = robust;
+  if (!robust) {
+    options.loss = BundleLoss::kCauchy;
+    options.spread = measure_spread(problem);
+  }
   options.function_tolerance = tolerance;
   return solve_bundle(problem, options);
 }
 
-/// The two passes, from a collected problem to the changed map.
+/// The two passes, to tell outliers and to find the minimum, from a collected problem to the
+/// changed map.
 BundleResult run_bundle(BundleProblem& problem, const Schedule& schedule, Map& map) {
   BundleResult result;
   result.fixed_keyframes = static_cast<int>(

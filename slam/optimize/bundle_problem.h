@@ -56,15 +56,38 @@ BundleProblem collect_whole_map(const Map& map, const Camera& camera, const Bund
 /// for blocks in one array: every array has its own group.
 enum BundleGroup { kPointGroup, kPoseGroup, kFocalGroup, kPlaneGroup };
 
+/// What the residuals of most sights really vary by (chi2), as a share of what their sigmas say: a
+/// keypoint's sigma is that of a corner, while most sights are aligned to a fraction of it.
+struct ResidualSpread {
+  double mono = 1.0;   ///< of sights without depth
+  double depth = 1.0;  ///< of those with it
+  /// Over the mean curvature that Cauchy leaves to a sight: what else is in a problem keeps its
+  /// say.
+  double gain = 1.0;
+};
+
+/// From the medians of the active observations, at the present poses and points.
+ResidualSpread measure_spread(const BundleProblem& problem);
+
+enum class BundleLoss {
+  kSquared,
+  kHuber,   ///< at the thresholds of chi2
+  kCauchy,  ///< at the spread, so that the few sights that are wrong have little say; not convex
+};
+
 struct BundleSolve {
   int iterations = 10;
-  bool robust = true;  ///< Huber
+  BundleLoss loss = BundleLoss::kHuber;
+  ResidualSpread spread;  ///< for Cauchy
   bool refine_focal = false;
   double focal_sigma = 0.03;         ///< of the factor on the focal length about 1
   double function_tolerance = 1e-5;  ///< relative change of the cost that ends it
   /// Adds further residuals and parameter blocks; what they are made of must outlive the call.
   std::function<void(ceres::Problem&, ceres::ParameterBlockOrdering&)> extend;
 };
+
+/// Sum of the losses of the active observations.
+double loss_of(const BundleProblem& problem, const BundleSolve& solve);
 
 /// Moves free poses and points to the least cost of the active observations. Returns the
 /// iterations.

@@ -99,17 +99,6 @@ double plane_rms(const PlaneProblem& planes, const BundleProblem& bundle,
   return count > 0 ? std::sqrt(sum / count) : 0.0;
 }
 
-double huber_cost(const BundleProblem& bundle) {
-  double sum = 0.0;
-  for (const BundleObservation& seen : bundle.observations) {
-    if (!seen.active) continue;
-    const double chi2 = bundle.chi2(seen);
-    const double threshold = bundle.threshold(seen);
-    sum += chi2 <= threshold ? chi2 : 2.0 * std::sqrt(chi2 * threshold) - threshold;
-  }
-  return sum;
-}
-
 /// Without depth the plane residuals would shrink with the map, at no cost in reprojection. Holds
 /// the distance between the first keyframe and the one farthest from it.
 std::unique_ptr<CentreDistanceCost> scale_cost(const BundleProblem& bundle, int& keyframe) {
@@ -128,15 +117,13 @@ std::unique_ptr<CentreDistanceCost> scale_cost(const BundleProblem& bundle, int&
 }
 
 void solve_jointly(BundleProblem& bundle, PlaneProblem& planes, double plane_sigma,
-                   int iterations) {
+                   BundleSolve solve) {
   PointPlaneCost cost(plane_sigma);
   std::deque<DepthPlaneCost> depth_costs;
   ceres::CauchyLoss cauchy(1.0);
   ceres::SphereManifold<3> sphere;
   int scale_keyframe = kNone;
   const std::unique_ptr<CentreDistanceCost> scale = scale_cost(bundle, scale_keyframe);
-  BundleSolve solve;
-  solve.iterations = iterations;
   solve.extend = [&](ceres::Problem& problem, ceres::ParameterBlockOrdering& ordering) {
     std::vector<char> used(planes.planes.size(), 0);
     for (const Ownership& owned : planes.owned) {
@@ -191,7 +178,11 @@ JointResult refine_jointly(Map& map, const Camera& camera, const JointOptions& o
   BundleProblem start = collect_whole_map(map, camera, options.bundle);
   const PlaneProblem start_planes = collect_planes(map, start);
   deactivate_outliers(start, std::numeric_limits<double>::infinity());
-  result.reprojection_cost_before = result.reprojection_cost_after = huber_cost(start);
+  BundleSolve solve;
+  solve.iterations = options.bundle.iterations;
+  solve.loss = BundleLoss::kCauchy;
+  solve.spread = measure_spread(start);
+  result.reprojection_cost_before = result.reprojection_cost_after = loss_of(start, solve);
   result.plane_rms_before = result.plane_rms_after = plane_rms(start_planes, start);
   result.plane_sigma = options.plane_sigma;
   if (start_planes.owned.empty()) return result;
@@ -201,8 +192,8 @@ JointResult refine_jointly(Map& map, const Camera& camera, const JointOptions& o
     result.plane_sigma = std::ldexp(options.plane_sigma, relaxation);
     BundleProblem bundle = start;
     PlaneProblem planes = start_planes;
-    solve_jointly(bundle, planes, result.plane_sigma, options.bundle.iterations);
-    result.reprojection_cost_after = huber_cost(bundle);
+    solve_jointly(bundle, planes, result.plane_sigma, solve);
+    result.reprojection_cost_after = loss_of(bundle, solve);
     result.plane_rms_after = plane_rms(planes, bundle);
     if (!(result.reprojection_cost_after <= limit)) continue;
     result.kept = true;

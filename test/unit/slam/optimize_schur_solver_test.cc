@@ -39,7 +39,7 @@ TEST(SolveWindow, ReachesTheMinimumThatCeresDoes) {
     solve_window(ours, {30, false, 1e-9});
     BundleSolve solve;
     solve.iterations = 30;
-    solve.robust = false;
+    solve.loss = BundleLoss::kSquared;
     solve.function_tolerance = 1e-9;
     solve_bundle(theirs, solve);
     EXPECT_LT(total_chi2(ours), 0.1 * before);
