@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "app/commands.h"
 #include "app/manual.h"
@@ -23,6 +24,7 @@ struct ModelCommand {
   std::string output;
   std::string animation;
   std::string environment;
+  std::optional<double> time_s;
   render::ImportOptions import;
   bool list = false;
   bool keep_triangles = false;
@@ -49,6 +51,7 @@ struct ModelCommand {
   void draw(const std::shared_ptr<const render::Model>& model) const {
     engine::TurntableOptions options = turntable;
     options.animation = find_animation(*model);
+    options.time_s = time_s.value_or(0.0);
     options.simplify = !keep_triangles;
     if (!environment.empty()) options.environment = engine::load_environment(environment);
     if (options.camera >= 0 && !engine::has_camera(*model, options.camera)) {
@@ -97,7 +100,7 @@ struct ModelCommand {
   int find_animation(const render::Model& model) const {
     const std::vector<std::string> names = render::animation_names(model);
     if (animation.empty()) {
-      if (turntable.time_s == 0.0) return -1;
+      if (!time_s) return -1;
       if (names.empty()) throw engine::UserError(file + ": no animation for --time");
       return 0;
     }
@@ -132,10 +135,9 @@ void add_model(CLI::App& app, Action& action) {
                    "Name or number of an animation to pose it by")
       ->type_name("NAME|N");
   command
-      ->add_option("--time", options->turntable.time_s,
-                   "Seconds into the animation, without --animation the first")
-      ->type_name("N")
-      ->capture_default_str();
+      ->add_option("--time", options->time_s,
+                   "Seconds into the animation, without --animation the first (default: 0)")
+      ->type_name("N");
   command->add_flag("--list", options->list, "Say what the file contains");
   command
       ->add_option("--scene", options->import.scene, "Scene by number instead of the default one")

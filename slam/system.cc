@@ -312,7 +312,7 @@ FinishResult System::finish() {
   BundleOptions bundle = options_.mapping.bundle;
   bundle.iterations = 20;
   bundle.refine_focal = camera_.guessed;
-  result.sights = refine_sights(working_map_, camera_, options_.track.patches.match);
+  refine_sights(working_map_, camera_, options_.track.patches.match);
   result.global = global_bundle(working_map_, camera_, bundle);
   if (options_.mapping.map_planes) {
     mapper_.follow_map(working_map_);

@@ -18,7 +18,6 @@
 #include "slam/stages/close_loops.h"
 #include "slam/stages/initialise.h"
 #include "slam/stages/map_keyframe.h"
-#include "slam/stages/refine_sights.h"
 #include "slam/stages/track.h"
 
 namespace planecast::slam {
@@ -68,7 +67,6 @@ struct FrameTrack {
 struct FinishResult {
   StageTimes mapping_times;  ///< of keyframes that were still in flight, one after the other
   bool loop_closed = false;  ///< one that was still being closed
-  RefineSightsResult sights;
   BundleResult global;
   JointResult joint;
 };

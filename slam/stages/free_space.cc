@@ -97,6 +97,7 @@ cv::Mat moving_parts(const cv::Mat& depth, const Pose& cam_from_world, const Map
           world_from_cam * (camera.ray(camera.undistort(middle)) * z);
       Emptiness most = kNotKnown;
       for (const KeyframeId id : keyframes) {
+        if (most == kCertain) break;
         most = std::max(most, was_empty(map.keyframes.at(id), point_world, camera, side, options));
       }
       emptiness.at<uchar>(row, col) = most;

@@ -53,9 +53,10 @@ void drop_moving(const Camera& camera, ImageFeatures& image, std::vector<Landmar
   matches = std::move(kept_matches);
 }
 
-/// Nobody looks at a keyframe's depth and masks again once its planes are mapped, and they are most
-/// of its memory.
-void release_images(Keyframe& keyframe) {
+/// Nobody looks at a keyframe's masks again once its planes are mapped, nor at its depth but for
+/// what it saw through, and they are most of its memory.
+void release_images(Keyframe& keyframe, const FreeSpaceOptions& options) {
+  if (!keyframe.depth.empty()) keyframe.nearest_depth = nearest_depths(keyframe.depth, options);
   keyframe.depth.release();
   keyframe.label_image.release();
 }
@@ -93,11 +94,13 @@ void KeyframeMapper::segment(const ImageFeatures& image, Keyframe& keyframe, Sta
 
 KeyframeReport KeyframeMapper::start(Map& map, const std::vector<ImageFeatures>& images) {
   KeyframeReport report;
-  for (Keyframe& keyframe : map.keyframes) {
-    if (keyframe.depth.empty()) continue;
-    keyframe.nearest_depth = nearest_depths(keyframe.depth, options_.free_space);
-  }
-  if (!options_.map_planes) return report;
+  if (options_.map_planes) map_planes_at_start(map, images, report);
+  for (Keyframe& keyframe : map.keyframes) release_images(keyframe, options_.free_space);
+  return report;
+}
+
+void KeyframeMapper::map_planes_at_start(Map& map, const std::vector<ImageFeatures>& images,
+                                         KeyframeReport& report) {
   std::size_t next = 0;
   for (Keyframe& keyframe : map.keyframes) {
     segment(images[next++], keyframe, report.times);
@@ -108,9 +111,7 @@ KeyframeReport KeyframeMapper::start(Map& map, const std::vector<ImageFeatures>&
     plane_mapper_.cull_non_planar(map, keyframe.id, report.planes);
     plane_mapper_.update(map, keyframe.id, report.planes);
   }
-  for (Keyframe& keyframe : map.keyframes) release_images(keyframe);
   report.times.emplace_back("Point-Plane Map Initialization", watch.lap_ms());
-  return report;
 }
 
 void KeyframeMapper::leave_out_moving(const Map& map, KeyframeJob& job) const {
@@ -142,9 +143,6 @@ KeyframeId KeyframeMapper::put_keyframe(Map& map, KeyframeJob& job, StageTimes& 
   const KeyframeId id = keyframe.id;
   keyframe.parent = map.living_ancestor(job.reference);
   if (options_.map_planes) segment(job.image, keyframe, times);
-  if (!keyframe.depth.empty()) {
-    keyframe.nearest_depth = nearest_depths(keyframe.depth, options_.free_space);
-  }
   map.keyframes.put(std::move(keyframe));
   for (std::size_t k = 0; k < job.estimate.matches.size(); ++k) {
     const LandmarkId landmark = job.estimate.matches[k];
@@ -196,7 +194,7 @@ KeyframeReport KeyframeMapper::insert(Map& map, KeyframeJob job) {
     plane_mapper_.follow_map(map);
     append_plane_times(report.planes, report.times);
   }
-  release_images(map.keyframes.at(id));
+  release_images(map.keyframes.at(id), options_.free_space);
   cull_keyframes(map, id, options_.points, report.points);
   report.times.emplace_back("Local Mapping", total.lap_ms());
   return report;

@@ -72,6 +72,8 @@ class KeyframeMapper {
   void reset();
 
  private:
+  void map_planes_at_start(Map& map, const std::vector<ImageFeatures>& images,
+                           KeyframeReport& report);
   /// Leaves out of the image's depth and features what came where earlier keyframes saw through.
   void leave_out_moving(const Map& map, KeyframeJob& job) const;
   KeyframeId put_keyframe(Map& map, KeyframeJob& job, StageTimes& times);

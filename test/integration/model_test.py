@@ -81,6 +81,7 @@ class Options(unittest.TestCase):
         self.assertNotEqual(second, self.picture(robot, "--animation", 1, "--time", 0.6))
         first = self.picture(robot, "--animation", 0, "--time", 0.4)
         self.assertEqual(first, self.picture(robot, "--time", 0.4))
+        self.assertEqual(self.picture(robot, "--animation", 0), self.picture(robot, "--time", 0))
         without = planecast("model", VARIANTS, "-o", PICTURE, "--time", 1, expect=REFUSED)
         self.assertIn("no animation", without.stderr)
         wrong = planecast("model", robot, "-o", PICTURE, "--animation", "Swim", expect=REFUSED)

@@ -10,16 +10,6 @@ namespace {
 constexpr float kWall = 3.0F;
 const cv::Rect kBox(120, 80, 64, 64);
 
-Camera pinhole() {
-  Camera camera;
-  camera.width = 320;
-  camera.height = 240;
-  camera.fx = camera.fy = 300.0;
-  camera.cx = 159.5;
-  camera.cy = 119.5;
-  return camera;
-}
-
 /// A wall straight ahead, with a box before it unless its depth is 0.
 cv::Mat wall_with_box(float box_m, float wall_m = kWall) {
   cv::Mat depth(240, 320, CV_32F, cv::Scalar(wall_m));
@@ -39,7 +29,7 @@ class FreeSpace : public ::testing::Test {
     return keyframe.id;
   }
   cv::Mat moving(const cv::Mat& depth, const Pose& cam_from_world = Pose::Identity()) const {
-    return moving_parts(depth, cam_from_world, map_, asked_, pinhole(), options_);
+    return moving_parts(depth, cam_from_world, map_, asked_, guess_camera(320, 240), options_);
   }
 
   FreeSpaceOptions options_;
