@@ -315,7 +315,7 @@ FinishResult System::finish() {
   refine_sights(working_map_, camera_, options_.track.patches.match);
   result.global = global_bundle(working_map_, camera_, bundle);
   if (options_.mapping.map_planes) {
-    mapper_.follow_map(working_map_);
+    mapper_.finish_planes(working_map_);
     if (options_.refine_jointly && !working_map_.planes.empty()) {
       JointOptions joint;
       joint.bundle = bundle;

@@ -192,17 +192,18 @@ std::optional<Eigen::Matrix2d> frame_from_anchor(const slam::Camera& camera,
   return derivative;
 }
 
-/// Finds the patch about `pixel` of one picture in another, from the smallest size to the largest;
-/// at each it must look the same.
-std::optional<Eigen::Vector2f> find_patch(const PictureSizes& from, const Eigen::Vector2f& pixel,
-                                          const PictureSizes& in, Eigen::Vector2f start,
-                                          const Eigen::Matrix2f& from_per_in,
-                                          const TrackOptions& options) {
+/// Finds the patch about `pixel` of one picture in another, from that of size `coarsest` to the
+/// largest; at each it must look the same.
+std::optional<Eigen::Vector2f> find_patch_from(const PictureSizes& from,
+                                               const Eigen::Vector2f& pixel, const PictureSizes& in,
+                                               Eigen::Vector2f start,
+                                               const Eigen::Matrix2f& from_per_in,
+                                               std::size_t coarsest, const TrackOptions& options) {
   slam::PatchAlignOptions align;
   align.iterations = 30;
   align.max_shift_px =
-      std::ldexp(static_cast<float>(options.max_shift_px), -static_cast<int>(from.size() - 1));
-  for (std::size_t i = from.size(); i-- > 0;) {
+      std::ldexp(static_cast<float>(options.max_shift_px), -static_cast<int>(coarsest));
+  for (std::size_t i = coarsest + 1; i-- > 0;) {
     const auto patch = slam::make_template(from[i], reduced(pixel, i), from_per_in);
     if (!patch) return std::nullopt;
     const auto found = slam::align_patch(*patch, in[i], reduced(start, i), align);
@@ -213,6 +214,19 @@ std::optional<Eigen::Vector2f> find_patch(const PictureSizes& from, const Eigen:
     align.max_shift_px = 2.0F;
   }
   return start;
+}
+
+/// The same from the smallest size that will do: about a point near what stands on the plane, the
+/// smaller pictures show more of that than of the plane.
+std::optional<Eigen::Vector2f> find_patch(const PictureSizes& from, const Eigen::Vector2f& pixel,
+                                          const PictureSizes& in, const Eigen::Vector2f& start,
+                                          const Eigen::Matrix2f& from_per_in,
+                                          const TrackOptions& options) {
+  for (std::size_t coarsest = from.size(); coarsest-- > 0;) {
+    const auto found = find_patch_from(from, pixel, in, start, from_per_in, coarsest, options);
+    if (found) return found;
+  }
+  return std::nullopt;
 }
 
 /// Compares the points in one frame.

@@ -147,12 +147,18 @@ std::vector<int> cluster_points(const std::vector<Eigen::Vector3d>& points, doub
   return number_by_size(parent);
 }
 
-double gap_between(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen::Vector3d>& b) {
-  double squared = HUGE_VAL;
+PointGap gap_between(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen::Vector3d>& b) {
+  PointGap gap;
+  double least = HUGE_VAL;
   for (const Eigen::Vector3d& p : a) {
-    for (const Eigen::Vector3d& q : b) squared = std::min(squared, (p - q).squaredNorm());
+    for (const Eigen::Vector3d& q : b) {
+      const double squared = (p - q).squaredNorm();
+      if (!(squared < least)) continue;
+      least = squared;
+      gap = {p, q, std::sqrt(squared)};
+    }
   }
-  return std::sqrt(squared);
+  return gap;
 }
 
 }  // namespace planecast::slam

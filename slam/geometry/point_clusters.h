@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <vector>
 
 namespace planecast::slam {
@@ -15,7 +16,12 @@ double typical_spacing(const std::vector<Eigen::Vector3d>& points);
 /// point; cluster 0 is the largest, ties by lowest point.
 std::vector<int> cluster_points(const std::vector<Eigen::Vector3d>& points, double link);
 
-/// Smallest distance between a point of `a` and one of `b`; infinite if either is empty.
-double gap_between(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen::Vector3d>& b);
+/// Where two sets of points are nearest to one another.
+struct PointGap {
+  Eigen::Vector3d from = Eigen::Vector3d::Zero();  ///< of the one
+  Eigen::Vector3d to = Eigen::Vector3d::Zero();    ///< of the other
+  double distance = HUGE_VAL;                      ///< infinite if either is empty
+};
+PointGap gap_between(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen::Vector3d>& b);
 
 }  // namespace planecast::slam

@@ -63,15 +63,15 @@ struct Schedule {
 int solve(BundleProblem& problem, const Schedule& schedule, bool robust) {
   const int iterations = robust ? schedule.robust_iterations : schedule.iterations;
   const double tolerance = robust ? schedule.robust_tolerance : schedule.tolerance;
-  if (schedule.window) return solve_window(problem, {iterations, robust, tolerance});
+  const RobustLoss loss = robust ? RobustLoss::kHuber : RobustLoss::kCauchy;
+  const ResidualSpread spread = robust ? ResidualSpread{} : measure_spread(problem);
+  if (schedule.window) return solve_window(problem, {iterations, loss, tolerance, spread});
   BundleSolve options;
   options.refine_focal = schedule.refine_focal;
   options.focal_sigma = schedule.focal_sigma;
   options.iterations = iterations;
-  if (!robust) {
-    options.loss = BundleLoss::kCauchy;
-    options.spread = measure_spread(problem);
-  }
+  options.loss = loss;
+  options.spread = spread;
   options.function_tolerance = tolerance;
   return solve_bundle(problem, options);
 }

@@ -74,21 +74,15 @@ ceres::Solver::Options solver_options(const BundleSolve& solve, int free_keyfram
   return options;
 }
 
-/// Square of Cauchy's width for a sight: 2.4 standard deviations, at which it is worth 95 % of
-/// least squares on normal errors.
-double cauchy_width2(const BundleProblem& problem, const ResidualSpread& spread, bool depth) {
-  return depth ? spread.depth * problem.chi2_depth : spread.mono * problem.chi2_mono;
-}
-
 std::unique_ptr<ceres::LossFunction> make_loss(const BundleProblem& problem,
                                                const BundleSolve& solve, bool depth) {
   switch (solve.loss) {
-    case BundleLoss::kSquared:
+    case RobustLoss::kSquared:
       return nullptr;
-    case BundleLoss::kHuber:
+    case RobustLoss::kHuber:
       return std::make_unique<ceres::HuberLoss>(
           std::sqrt(depth ? problem.chi2_depth : problem.chi2_mono));
-    case BundleLoss::kCauchy:
+    case RobustLoss::kCauchy:
       break;
   }
   return std::make_unique<ceres::ScaledLoss>(
@@ -177,23 +171,17 @@ BundleProblem collect_whole_map(const Map& map, const Camera& camera,
   return collect_bundle(map, camera, keyframes, fixed, landmarks, options);
 }
 
+double cauchy_width2(const BundleProblem& problem, const ResidualSpread& spread, bool depth) {
+  return depth ? spread.depth * problem.chi2_depth : spread.mono * problem.chi2_mono;
+}
+
 ResidualSpread measure_spread(const BundleProblem& problem) {
-  // Medians of chi2 with two and three degrees of freedom.
-  constexpr double kMedianMono = 1.386;
-  constexpr double kMedianDepth = 2.366;
-  static constexpr double kLeast = 1e-4;
   std::vector<double> mono, depth;
   for (const BundleObservation& seen : problem.observations) {
     if (seen.active) (seen.term.rows() == 3 ? depth : mono).push_back(problem.chi2(seen));
   }
-  const auto spread = [](std::vector<double>& chi2, double expected) {
-    if (chi2.empty()) return 1.0;
-    const auto middle = chi2.begin() + static_cast<std::ptrdiff_t>(chi2.size() / 2);
-    std::nth_element(chi2.begin(), middle, chi2.end());
-    return std::clamp(*middle / expected, kLeast, 1.0);
-  };
   const std::size_t count = mono.size() + depth.size();
-  ResidualSpread result{spread(mono, kMedianMono), spread(depth, kMedianDepth), 1.0};
+  ResidualSpread result{spread_of(mono, 2), spread_of(depth, 3), 1.0};
   double curvature = 0.0;
   const auto add = [&](const std::vector<double>& all, bool is_depth) {
     const double width2 = cauchy_width2(problem, result, is_depth);

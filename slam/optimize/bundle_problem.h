@@ -11,6 +11,7 @@
 #include "slam/data/map.h"
 #include "slam/optimize/bundle.h"
 #include "slam/optimize/reprojection_cost.h"
+#include "slam/optimize/robust_loss.h"
 
 namespace planecast::slam {
 
@@ -56,28 +57,16 @@ BundleProblem collect_whole_map(const Map& map, const Camera& camera, const Bund
 /// for blocks in one array: every array has its own group.
 enum BundleGroup { kPointGroup, kPoseGroup, kFocalGroup, kPlaneGroup };
 
-/// What the residuals of most sights really vary by (chi2), as a share of what their sigmas say: a
-/// keypoint's sigma is that of a corner, while most sights are aligned to a fraction of it.
-struct ResidualSpread {
-  double mono = 1.0;   ///< of sights without depth
-  double depth = 1.0;  ///< of those with it
-  /// Over the mean curvature that Cauchy leaves to a sight: what else is in a problem keeps its
-  /// say.
-  double gain = 1.0;
-};
-
 /// From the medians of the active observations, at the present poses and points.
 ResidualSpread measure_spread(const BundleProblem& problem);
 
-enum class BundleLoss {
-  kSquared,
-  kHuber,   ///< at the thresholds of chi2
-  kCauchy,  ///< at the spread, so that the few sights that are wrong have little say; not convex
-};
+/// Square of Cauchy's width for a sight: 2.4 standard deviations, at which it is worth 95 % of
+/// least squares on normal errors.
+double cauchy_width2(const BundleProblem& problem, const ResidualSpread& spread, bool depth);
 
 struct BundleSolve {
   int iterations = 10;
-  BundleLoss loss = BundleLoss::kHuber;
+  RobustLoss loss = RobustLoss::kHuber;
   ResidualSpread spread;  ///< for Cauchy
   bool refine_focal = false;
   double focal_sigma = 0.03;         ///< of the factor on the focal length about 1

@@ -180,7 +180,7 @@ JointResult refine_jointly(Map& map, const Camera& camera, const JointOptions& o
   deactivate_outliers(start, std::numeric_limits<double>::infinity());
   BundleSolve solve;
   solve.iterations = options.bundle.iterations;
-  solve.loss = BundleLoss::kCauchy;
+  solve.loss = RobustLoss::kCauchy;
   solve.spread = measure_spread(start);
   result.reprojection_cost_before = result.reprojection_cost_after = loss_of(start, solve);
   result.plane_rms_before = result.plane_rms_after = plane_rms(start_planes, start);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "slam/geometry/pose_system.h"
+#include "slam/optimize/robust_loss.h"
 
 namespace planecast::slam {
 namespace {
@@ -25,13 +26,15 @@ struct Residual {
   double threshold = 0.0;
 };
 
-double huber_cost(double chi2, double threshold) {
-  return chi2 <= threshold ? chi2 : 2.0 * std::sqrt(chi2 * threshold) - threshold;
-}
+struct PoseLoss {
+  RobustLoss loss = RobustLoss::kSquared;
+  ResidualSpread spread;  ///< for Cauchy
 
-double huber_weight(double chi2, double threshold) {
-  return chi2 <= threshold ? 1.0 : std::sqrt(threshold / chi2);
-}
+  double width2(const Residual& residual) const {
+    if (loss != RobustLoss::kCauchy) return residual.threshold;
+    return residual.threshold * (residual.rows == 3 ? spread.depth : spread.mono);
+  }
+};
 
 class PoseProblem {
  public:
@@ -43,17 +46,18 @@ class PoseProblem {
         baseline_fx_(options.depth_baseline_m * std::abs(camera.fx)) {}
 
   /// Normal equations over the active observations, cost included.
-  PoseSystem linearise(const Pose& pose, const std::vector<char>& active, bool robust) const {
+  PoseSystem linearise(const Pose& pose, const std::vector<char>& active,
+                       const PoseLoss& loss) const {
     PoseSystem system;
     for (std::size_t i = 0; i < observations_.size(); ++i) {
       if (!active[i]) continue;
       const PoseObservation& seen = observations_[i];
       const Eigen::Vector3d point = pose * seen.point_world;
       const Residual residual = evaluate(seen, point);
-      system.cost += robust ? huber_cost(residual.chi2, residual.threshold) : residual.chi2;
+      system.cost += robust_cost(loss.loss, residual.chi2, loss.width2(residual));
       if (!(point.z() > 0.0)) continue;
       add(system, point, residual, seen.sigma_px,
-          robust ? huber_weight(residual.chi2, residual.threshold) : 1.0);
+          robust_weight(loss.loss, residual.chi2, loss.width2(residual)));
     }
     return system;
   }
@@ -76,6 +80,16 @@ class PoseProblem {
     }
     result.rms = rows > 0 ? std::sqrt(chi2_sum / rows) : 0.0;
     return changed;
+  }
+
+  ResidualSpread spread(const Pose& pose, const std::vector<char>& active) const {
+    std::vector<double> mono, depth;
+    for (std::size_t i = 0; i < observations_.size(); ++i) {
+      if (!active[i]) continue;
+      const Residual residual = evaluate(observations_[i], pose * observations_[i].point_world);
+      (residual.rows == 3 ? depth : mono).push_back(residual.chi2);
+    }
+    return {spread_of(mono, 2), spread_of(depth, 3), 1.0};
   }
 
  private:
@@ -117,15 +131,15 @@ class PoseProblem {
 
 /// Levenberg-Marquardt over a fixed set of observations.
 Pose minimise(const PoseProblem& problem, const Pose& initial, const std::vector<char>& active,
-              bool robust, int iterations) {
+              const PoseLoss& loss, int iterations) {
   Pose pose = initial;
-  PoseSystem system = problem.linearise(pose, active, robust);
+  PoseSystem system = problem.linearise(pose, active, loss);
   double damping = kInitialDamping;
   for (int i = 0; i < iterations && damping < kMaxDamping; ++i) {
     const PoseStep step = system.solve(damping);
     if (!step.allFinite()) break;
     const Pose candidate = stepped(pose, step);
-    const PoseSystem next = problem.linearise(candidate, active, robust);
+    const PoseSystem next = problem.linearise(candidate, active, loss);
     if (!(next.cost < system.cost)) {
       // Nothing left to gain, or too bold a step.
       if (next.cost <= system.cost * (1.0 + kCostTolerance)) break;
@@ -154,13 +168,24 @@ PoseResult optimize_pose(const Camera& camera, const Pose& initial_cam_from_worl
   for (int round = 0; round < options.rounds; ++round) {
     if (result.num_inliers < kMinObservations) break;
     const bool robust = round < options.rounds / 2;
+    const PoseLoss loss{robust ? RobustLoss::kHuber : RobustLoss::kSquared, {}};
     result.cam_from_world =
-        minimise(problem, result.cam_from_world, result.inlier, robust, options.iterations);
+        minimise(problem, result.cam_from_world, result.inlier, loss, options.iterations);
     const bool changed = problem.classify(result.cam_from_world, result);
     // Another round over the same observations would end where this one did.
     if (!robust && !changed) break;
   }
-  result.information = problem.linearise(result.cam_from_world, result.inlier, false).hessian;
+  if (options.weigh && result.num_inliers >= kMinObservations) {
+    const PoseLoss loss{RobustLoss::kCauchy, problem.spread(result.cam_from_world, result.inlier)};
+    // Sights that vary as much as their sigmas say leave nothing to tell apart within the gate.
+    constexpr double kAsTheirSigmas = 0.5;
+    if (std::min(loss.spread.mono, loss.spread.depth) < kAsTheirSigmas) {
+      result.cam_from_world =
+          minimise(problem, result.cam_from_world, result.inlier, loss, options.iterations);
+      problem.classify(result.cam_from_world, result);
+    }
+  }
+  result.information = problem.linearise(result.cam_from_world, result.inlier, {}).hessian;
   return result;
 }
 

@@ -24,6 +24,9 @@ struct PoseOptions {
   double chi2_mono = 5.991;   ///< 95 %, 2 degrees of freedom
   double chi2_depth = 7.815;  ///< 95 %, 3 degrees of freedom
   double depth_baseline_m = 0.08;
+  /// After the rounds once more with Cauchy at the spread that most inliers have: sights are mostly
+  /// better than their sigma, and a few that are wrong by less than the thresholds bend the pose.
+  bool weigh = true;
 };
 
 struct PoseResult {
@@ -36,8 +39,7 @@ struct PoseResult {
 };
 
 /// Motion-only bundle adjustment: Gauss-Newton/LM with analytic Jacobians on se(3), Huber in the
-/// first rounds, outliers left out between rounds and able to come back. Allocation-free but for
-/// the result.
+/// first rounds, outliers left out between rounds and able to come back.
 PoseResult optimize_pose(const Camera& camera, const Pose& initial_cam_from_world,
                          const std::vector<PoseObservation>& observations,
                          const PoseOptions& options = {});

@@ -20,10 +20,6 @@ constexpr double kMaxDamping = 1e6;
 /// direction.
 constexpr double kBehindFactor = 1e4;
 
-double robust_cost(double chi2, double threshold) {
-  return chi2 <= threshold ? chi2 : 2.0 * std::sqrt(chi2 * threshold) - threshold;
-}
-
 /// An active observation, without what all share.
 struct Sight {
   int pose = 0;
@@ -33,6 +29,7 @@ struct Sight {
   double inverse_sigma = 0.0;
   double inverse_depth = 0.0;
   double threshold = 0.0;
+  double width2 = 0.0;  ///< see robust_cost()
 };
 
 /// A state of the poses and points that are looked for.
@@ -43,15 +40,15 @@ struct State {
 
 class Window {
  public:
-  Window(BundleProblem& problem, bool robust)
-      : problem_(problem), robust_(robust), elimination_(count_free(problem)) {
+  Window(BundleProblem& problem, const SchurOptions& options)
+      : problem_(problem), loss_(options.loss), elimination_(count_free(problem)) {
     for (const PoseBlock& block : problem.poses) now_.poses.push_back(pose_from_block(block));
     now_.points = problem.points;
     int next = 0;
     for (const char fixed : problem.fixed) slot_.push_back(fixed != 0 ? kNone : next++);
     sights_.reserve(problem.observations.size());
     for (const BundleObservation& seen : problem.observations) {
-      if (seen.active) add(seen);
+      if (seen.active) add(seen, options);
     }
     point_begin_.push_back(sights_.size());
     derivatives_.resize(most_sights());
@@ -78,8 +75,9 @@ class Window {
       std::swap(now_, next_);
       // A decrease as large as foretold ends at the minimum of what the equations describe.
       const double decrease = now - next;
-      const double left =
-          robust_ ? decrease : std::abs(elimination_.expected_decrease() - decrease);
+      const double left = loss_ == RobustLoss::kSquared
+                              ? std::abs(elimination_.expected_decrease() - decrease)
+                              : decrease;
       const bool converged = std::min(decrease, left) < options.function_tolerance * now;
       now = next;
       damping = std::max(0.1 * damping, kLeastDamping);
@@ -97,14 +95,18 @@ class Window {
     return static_cast<std::size_t>(std::count(problem.fixed.begin(), problem.fixed.end(), 0));
   }
 
-  void add(const BundleObservation& seen) {
+  void add(const BundleObservation& seen, const SchurOptions& options) {
     // One camera took all keyframes.
     camera_ = seen.term;
     if (sights_.empty() || sights_.back().point != seen.point) {
       point_begin_.push_back(sights_.size());
     }
+    const double threshold = problem_.threshold(seen);
+    const double width2 = options.loss == RobustLoss::kCauchy
+                              ? cauchy_width2(problem_, options.spread, seen.term.rows() == 3)
+                              : threshold;
     sights_.push_back({seen.pose, seen.point, seen.term.rows(), seen.term.pixel,
-                       seen.term.inverse_sigma, seen.term.inverse_depth, problem_.threshold(seen)});
+                       seen.term.inverse_sigma, seen.term.inverse_depth, threshold, width2});
     slots_.push_back(slot_[static_cast<std::size_t>(seen.pose)]);
   }
 
@@ -140,7 +142,7 @@ class Window {
         chi2 = residual[0] * residual[0] + residual[1] * residual[1];
         if (sight.rows == 3) chi2 += residual[2] * residual[2];
       }
-      sum += robust_ ? robust_cost(chi2, sight.threshold) : chi2;
+      sum += robust_cost(loss_, chi2, sight.width2);
     }
     return sum;
   }
@@ -157,11 +159,8 @@ class Window {
     d.rows = sight.rows;
     double chi2 = 0.0;
     for (int k = 0; k < d.rows; ++k) chi2 += d.residual[k] * d.residual[k];
-    double weight = 1.0;
-    if (robust_ && chi2 > sight.threshold) {
-      weight = std::sqrt(std::sqrt(sight.threshold / chi2));
-      for (int k = 0; k < d.rows; ++k) d.residual[k] *= weight;
-    }
+    const double weight = std::sqrt(robust_weight(loss_, chi2, sight.width2));
+    for (int k = 0; k < d.rows; ++k) d.residual[k] *= weight;
     const double inverse_z = 1.0 / p.z();
     const double s_z = weight * sight.inverse_sigma * inverse_z;
     const double gx = s_z * camera_.fx;
@@ -211,7 +210,7 @@ class Window {
   }
 
   BundleProblem& problem_;
-  bool robust_;
+  RobustLoss loss_;
   PointElimination elimination_;
   ReprojectionTerm camera_ = ReprojectionTerm({}, 0.0, Eigen::Vector2d::Zero(), 1.0, 0.0);
   State now_;
@@ -228,7 +227,7 @@ class Window {
 }  // namespace
 
 int solve_window(BundleProblem& problem, const SchurOptions& options) {
-  return Window(problem, options.robust).minimise(options);
+  return Window(problem, options).minimise(options);
 }
 
 }  // namespace planecast::slam

@@ -6,8 +6,9 @@ namespace planecast::slam {
 
 struct SchurOptions {
   int iterations = 10;
-  bool robust = true;                ///< Huber
+  RobustLoss loss = RobustLoss::kHuber;
   double function_tolerance = 1e-4;  ///< relative change of the cost that ends it
+  ResidualSpread spread = {};        ///< for Cauchy
 };
 
 /// Moves free poses and points to the least cost of the active observations, as solve_bundle does,

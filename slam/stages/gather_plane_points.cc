@@ -108,8 +108,8 @@ void append_depth_samples(const Keyframe& keyframe, const PlaneContext& context,
   }
 }
 
-/// Landmarks in the keyframe's masks that it has no keypoint of. Only those that were seen from
-/// about here are taken, since others may be hidden.
+/// Landmarks, in the keyframe's masks if it has any, that it has no keypoint of. Only those that
+/// were seen from about here are taken, since others may be hidden.
 void append_unseen_landmarks(const Map& map, const Keyframe& keyframe, const PlaneContext& context,
                              KeyframePoints& out) {
   constexpr double kMinViewCosine = 0.95;
@@ -130,7 +130,7 @@ void append_unseen_landmarks(const Map& map, const Keyframe& keyframe, const Pla
     const Eigen::Vector2d raw =
         context.camera.has_distortion() ? context.camera.distort(point.pixel) : point.pixel;
     point.label = label_at(keyframe.label_image, raw.cast<float>());
-    if (point.label != 0) append(point, context, out);
+    if (point.label != 0 || keyframe.label_image.empty()) append(point, context, out);
   }
 }
 
@@ -149,7 +149,9 @@ KeyframePoints gather_points(const Map& map, KeyframeId id, const PlaneContext& 
   append_depth_samples(*keyframe, context, result);
   result.observed = result.size();
   result.has_normals = context.rgbd && !keyframe->depth.empty();
-  if (!keyframe->label_image.empty()) append_unseen_landmarks(map, *keyframe, context, result);
+  if (!keyframe->label_image.empty() || context.finished) {
+    append_unseen_landmarks(map, *keyframe, context, result);
+  }
   result.has_masks = !keyframe->label_image.empty() ||
                      std::any_of(keyframe->labels.begin(), keyframe->labels.end(),
                                  [](int label) { return label > 0; });

@@ -67,6 +67,11 @@ class KeyframeMapper {
   KeyframeReport insert(Map& map, KeyframeJob job);
   /// Brings the planes along after the map was changed as a whole.
   void follow_map(Map& map) { plane_mapper_.follow_map(map); }
+  /// Looks for planes once more in a map to which no keyframe will be added.
+  void finish_planes(Map& map) {
+    PlaneMappingStats stats;
+    plane_mapper_.finish(map, stats);
+  }
   PlaneScale plane_scale() const { return plane_mapper_.scale(); }
   /// Forgets everything about the map before.
   void reset();

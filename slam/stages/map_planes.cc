@@ -1,6 +1,8 @@
 #include "slam/stages/map_planes.h"
 
+#include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "slam/stages/plane_steps.h"
 
@@ -25,6 +27,17 @@ class StepTimer {
   Clock::time_point start_ = Clock::now();
 };
 
+/// Whether somebody said of any keyframe where planes are in it.
+bool has_masks(const Map& map) {
+  for (const Keyframe& keyframe : map.keyframes) {
+    if (std::any_of(keyframe.labels.begin(), keyframe.labels.end(),
+                    [](int label) { return label > 0; })) {
+      return true;
+    }
+  }
+  return false;
+}
+
 /// Mean distance of the keyframe's landmarks from its camera; 0 without landmarks.
 double mean_distance(const Map& map, KeyframeId id) {
   const Keyframe& keyframe = map.keyframes.at(id);
@@ -46,7 +59,7 @@ PlaneScale scale_at(const Map& map, KeyframeId keyframe, const PlaneMappingOptio
   if (rgbd && previous.eps_d > 0.0) return previous;
   const double scale = rgbd ? mean_distance(map, keyframe) : map.median_depth(keyframe);
   if (!(scale > 0.0)) return previous;
-  return {options.eps_d * scale, options.eps_pi * scale};
+  return {options.eps_d * scale, options.eps_pi * scale, options.eps_d * scale};
 }
 
 }  // namespace
@@ -57,7 +70,7 @@ PlaneMapper::PlaneMapper(const PlaneMappingOptions& options, const Camera& camer
 PlaneContext PlaneMapper::context_of(const Map& map) const {
   /// Landmarks of fewer keyframes fill any slab.
   constexpr std::size_t kYoung = 8;
-  return {options_, scale_, camera_, rgbd_, map.keyframes.size() < kYoung};
+  return {options_, scale_, camera_, rgbd_, map.keyframes.size() < kYoung, finished_};
 }
 
 void PlaneMapper::cull_non_planar(Map& map, KeyframeId keyframe, PlaneMappingStats& stats) {
@@ -104,6 +117,33 @@ void PlaneMapper::update(Map& map, KeyframeId keyframe, PlaneMappingStats& stats
   const RefineCounts counts = project_landmarks(map, keyframe, context);
   stats.refined += counts.refined;
   stats.refused += counts.refused;
+}
+
+void PlaneMapper::search_again(Map& map, PlaneMappingStats& stats) {
+  /// Of the thresholds of a growing map.
+  constexpr double kTighter = 0.5;
+  const bool project = std::exchange(options_.project, false);
+  for (const Keyframe& keyframe : map.keyframes) {
+    scale_ = scale_at(map, keyframe.id, options_, rgbd_, scale_);
+    const PlaneScale growing = scale_;
+    scale_.eps_d *= kTighter;
+    scale_.eps_pi *= kTighter;
+    update(map, keyframe.id, stats);
+    scale_ = growing;
+  }
+  options_.project = project;
+}
+
+void PlaneMapper::finish(Map& map, PlaneMappingStats& stats) {
+  follow_map(map);
+  if (!(scale_.eps_d > 0.0) || options_.merge == PlaneMerge::kPaper) return;
+  finished_ = true;
+  if (rgbd_ || has_masks(map)) {
+    stats.merged += merge_planes(map, context_of(map), {});
+  } else {
+    search_again(map, stats);
+  }
+  finished_ = false;
 }
 
 void PlaneMapper::follow_map(Map& map) {

@@ -27,6 +27,7 @@ struct PlaneMappingOptions {
 struct PlaneScale {
   double eps_d = 0.0;
   double eps_pi = 0.0;
+  double link = 0.0;  ///< unit of what lies together: eps_d as it is while a map grows
 };
 
 struct PlaneMappingStats {
@@ -57,14 +58,20 @@ class PlaneMapper {
   void update(Map& map, KeyframeId keyframe, PlaneMappingStats& stats);
   /// After the map moved as a whole or BA changed it: refits every plane to its landmarks.
   void follow_map(Map& map);
+  /// [D] Refits the planes of a map that is finished and looks once more, since its depths are
+  /// better than they were while it grew: parts of one plane are merged across what is bare between
+  /// them, and without masks and depth every keyframe is searched again, by half the thresholds.
+  void finish(Map& map, PlaneMappingStats& stats);
   PlaneScale scale() const { return scale_; }
 
  private:
   PlaneContext context_of(const Map& map) const;
+  void search_again(Map& map, PlaneMappingStats& stats);
 
   PlaneMappingOptions options_;
   Camera camera_;
   bool rgbd_;
+  bool finished_ = false;
   PlaneScale scale_;
 };
 

@@ -219,7 +219,7 @@ class PlaneFinder {
     const FacingPlaneModel model(points, direction);
     std::vector<NeighbourPair> neighbours;
     if (context_.options.graph_cut) {
-      neighbours = radius_neighbours(points.positions, 2.0 * context_.scale.eps_d);
+      neighbours = radius_neighbours(points.positions, 2.0 * context_.scale.link);
     }
     RansacOptions options = ransac_options(threshold, min_ratio);
     if (!shown_.has_masks) options.background_cost = kBackgroundCost;
@@ -304,9 +304,8 @@ class PlaneFinder {
         ++plane.inliers;
       }
     }
-    plane.weak =
-        static_cast<int>(candidate.inliers.size()) < strong_support(plane, context_.options) ||
-        least_observers(plane, context_) > 1;
+    plane.weak = static_cast<int>(candidate.inliers.size()) < strong_support(plane, context_) ||
+                 least_observers(plane, context_) > 1;
     map_.planes.put(std::move(plane));
   }
 

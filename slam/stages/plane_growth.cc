@@ -207,7 +207,7 @@ int expand_planes(Map& map, KeyframeId keyframe, const PlaneContext& context, Ke
     }
   }
   for (Plane& plane : map.planes) {
-    bound_depth_points(plane, kMostDepthPoints, context.scale.eps_d);
+    bound_depth_points(plane, kMostDepthPoints, context.scale.link);
   }
   note_observers(map, keyframe, shown);
   return joined;

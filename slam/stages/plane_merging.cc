@@ -38,11 +38,83 @@ std::vector<Eigen::Vector3d> thinned(const std::vector<Eigen::Vector3d>& points)
   return result;
 }
 
-bool extents_touch(const PlanePoints& a, const PlanePoints& b, const PlaneScale& scale) {
+/// How two planes' supports lie to one another.
+struct Apart {
+  PointGap gap;
+  double link = 0.0;  ///< a shorter gap is none
+  bool touch() const { return gap.distance < link; }
+};
+
+Apart how_apart(const PlanePoints& a, const PlanePoints& b, const PlaneScale& scale) {
   const std::vector<Eigen::Vector3d> points_a = thinned(a.positions);
   const std::vector<Eigen::Vector3d> points_b = thinned(b.positions);
-  const double link = std::max(link_of(points_a, scale), link_of(points_b, scale));
-  return gap_between(points_a, points_b) < link;
+  return {gap_between(points_a, points_b),
+          std::max(link_of(points_a, scale), link_of(points_b, scale))};
+}
+
+/// Whether the strip of the plane between the two is known to be bare [D]: some keyframe looks at
+/// its middle, and none sees through it what lies behind.
+bool is_bare_between(const Map& map, const Plane& plane, const Apart& apart,
+                     const PlaneContext& context) {
+  constexpr int kMostSeenThrough = 2;
+  constexpr double kClearlyBehind = 3.0;  // eps_d
+  const Eigen::Vector3d along = (apart.gap.to - apart.gap.from) / apart.gap.distance;
+  const Eigen::Vector3d middle = 0.5 * (apart.gap.from + apart.gap.to);
+  const double width = std::max(apart.link, 0.25 * apart.gap.distance);
+  bool looked_at = false;
+  std::vector<char> counted(static_cast<std::size_t>(map.landmarks.next_id()), 0);
+  int seen_through = 0;
+  for (const Keyframe& keyframe : map.keyframes) {
+    const Eigen::Vector3d centre = keyframe.centre_world();
+    const double height = plane.signed_distance(centre);
+    if (!(height > 0.0)) continue;
+    const Eigen::Vector3d middle_cam = keyframe.cam_from_world * middle;
+    looked_at = looked_at || (middle_cam.z() > 0.0 &&
+                              context.camera.contains(context.camera.project(middle_cam)));
+    for (const LandmarkId id : keyframe.landmarks) {
+      const Landmark* landmark = map.landmarks.find(id);
+      if (landmark == nullptr || counted[static_cast<std::size_t>(id)] != 0) continue;
+      const double depth = -plane.signed_distance(landmark->position);
+      if (depth < kClearlyBehind * context.scale.eps_d) continue;
+      const Eigen::Vector3d crossing =
+          centre + height / (height + depth) * (landmark->position - centre);
+      const Eigen::Vector3d off = crossing - apart.gap.from;
+      const double at = off.dot(along);
+      if (at < 0.0 || at > apart.gap.distance || (off - at * along).norm() > width) continue;
+      counted[static_cast<std::size_t>(id)] = 1;
+      if (++seen_through > kMostSeenThrough) return false;
+    }
+  }
+  return looked_at;
+}
+
+/// Label that most of a plane's landmarks in the keyframe have, 0 where fewer than three agree.
+int label_of(const Map& map, const Keyframe& keyframe, PlaneId plane) {
+  constexpr int kMinAgreed = 3;
+  std::map<int, int> votes;
+  for (std::size_t k = 0; k < keyframe.landmarks.size() && k < keyframe.labels.size(); ++k) {
+    const Landmark* landmark = map.landmarks.find(keyframe.landmarks[k]);
+    if (landmark != nullptr && landmark->plane == plane) ++votes[keyframe.labels[k]];
+  }
+  int label = 0;
+  int most = kMinAgreed - 1;
+  for (const auto& [candidate, count] : votes) {
+    if (candidate > 0 && count > most) {
+      label = candidate;
+      most = count;
+    }
+  }
+  return label;
+}
+
+/// Whether some image's masks tell the two planes apart.
+bool are_told_apart(const Map& map, PlaneId a, PlaneId b) {
+  for (const Keyframe& keyframe : map.keyframes) {
+    const int label_a = label_of(map, keyframe, a);
+    const int label_b = label_a > 0 ? label_of(map, keyframe, b) : 0;
+    if (label_b > 0 && label_a != label_b) return true;
+  }
+  return false;
 }
 
 /// Pairs (lower id first) of planes that one mask instance shows together.
@@ -113,7 +185,7 @@ bool fits_jointly(const Plane& a, const PlaneSupport& support_a, const PlaneSupp
   return true;
 }
 
-bool same_plane(const Plane& a, const Plane& b, const PlaneSupport& support_a,
+bool same_plane(const Map& map, const Plane& a, const Plane& b, const PlaneSupport& support_a,
                 const PlaneSupport& support_b, const SharedMasks& masks,
                 const PlaneContext& context) {
   if (support_a.points.size() == 0 || support_b.points.size() == 0) return false;
@@ -122,9 +194,11 @@ bool same_plane(const Plane& a, const Plane& b, const PlaneSupport& support_a,
   const double limit = kMaxCentroidDistance * context.scale.eps_d;
   if (std::abs(a.signed_distance(centroid_of(support_b.points))) > limit) return false;
   if (std::abs(b.signed_distance(centroid_of(support_a.points))) > limit) return false;
-  return fits_jointly(a, support_a, support_b, context) &&
-         (masks.contain(a.id, b.id) ||
-          extents_touch(support_a.points, support_b.points, context.scale));
+  if (!fits_jointly(a, support_a, support_b, context)) return false;
+  if (masks.contain(a.id, b.id)) return true;
+  const Apart apart = how_apart(support_a.points, support_b.points, context.scale);
+  return apart.touch() || (context.finished && !are_told_apart(map, a.id, b.id) &&
+                           is_bare_between(map, a, apart, context));
 }
 
 template <typename T>
@@ -166,7 +240,8 @@ int merge_planes(Map& map, const PlaneContext& context, const KeyframePoints& sh
   for (PlaneId a = 0; a < map.planes.next_id(); ++a) {
     for (PlaneId b = a + 1; b < map.planes.next_id(); ++b) {
       if (!map.planes.contains(a) || !map.planes.contains(b)) continue;
-      if (!same_plane(map.planes.at(a), map.planes.at(b), support[a], support[b], masks, context)) {
+      if (!same_plane(map, map.planes.at(a), map.planes.at(b), support[a], support[b], masks,
+                      context)) {
         continue;
       }
       take_over(map, a, b, support[a], support[b], context);

@@ -16,6 +16,8 @@ constexpr double kMaxBand = 2.5;
 /// Of own_eps: the least, in eps_d, and its standard deviations.
 constexpr double kTightest = 0.35;
 constexpr double kSigmas = 3.0;
+/// Of strong_inliers, where no mask speaks for a plane.
+constexpr double kUnmasked = 2.0;
 
 }  // namespace
 
@@ -93,12 +95,17 @@ PlaneMixtureOptions mixture_options(const PlaneScale& scale) {
   return options;
 }
 
-int strong_support(const Plane& plane, const PlaneMappingOptions& options) {
+int strong_support(const Plane& plane, const PlaneContext& context) {
   constexpr std::size_t kManyObservers = 5;
   constexpr double kConfirmed = 0.6;
-  if (plane.label == 0) return 2 * options.strong_inliers;
-  if (plane.observers.size() < kManyObservers) return options.strong_inliers;
-  return static_cast<int>(std::lround(kConfirmed * options.strong_inliers));
+  constexpr double kUnmaskedAtLast = 0.8;
+  double factor = 1.0;
+  if (plane.label == 0) {
+    factor = context.finished ? kUnmaskedAtLast : kUnmasked;
+  } else if (plane.observers.size() >= kManyObservers) {
+    factor = kConfirmed;
+  }
+  return static_cast<int>(std::lround(factor * context.options.strong_inliers));
 }
 
 int least_observers(const Plane& plane, const PlaneContext& context) {
@@ -108,7 +115,10 @@ int least_observers(const Plane& plane, const PlaneContext& context) {
 
 bool may_be_slab(const Plane& plane, const PlanePoints& support, const PlaneContext& context) {
   const bool vouched = context.rgbd && plane.label > 0;
-  if (vouched || context.young || context.options.merge == PlaneMerge::kPaper) return false;
+  const bool proved =
+      context.finished && support.size() >= kUnmasked * context.options.strong_inliers;
+  if (vouched || proved || context.young || context.options.merge == PlaneMerge::kPaper)
+    return false;
   return !is_sharp(own_eps({plane.normal, plane.offset}, support, context.scale), context.scale);
 }
 
@@ -123,7 +133,7 @@ void update_figures(Plane& plane, const PlaneSupport& support, const PlaneContex
   }
   plane.rms = weight > 0.0 ? std::sqrt(sum / weight) : 0.0;
   plane.inliers = static_cast<int>(support.landmarks.size());
-  plane.weak = support.points.size() < strong_support(plane, context.options) ||
+  plane.weak = support.points.size() < strong_support(plane, context) ||
                static_cast<int>(plane.observers.size()) < least_observers(plane, context) ||
                may_be_slab(plane, support.points, context);
 }
@@ -182,11 +192,11 @@ void erase_plane(Map& map, PlaneId plane) {
 }
 
 double link_of(const std::vector<Eigen::Vector3d>& support, const PlaneScale& scale) {
-  return std::min(link_in_mask(support, scale), 6.0 * scale.eps_d);
+  return std::min(link_in_mask(support, scale), 6.0 * scale.link);
 }
 
 double link_in_mask(const std::vector<Eigen::Vector3d>& support, const PlaneScale& scale) {
-  return std::max(linking_distance(support), 2.0 * scale.eps_d);
+  return std::max(linking_distance(support), 2.0 * scale.link);
 }
 
 }  // namespace planecast::slam

@@ -19,6 +19,9 @@ struct PlaneContext {
   Camera camera;
   bool rgbd = false;
   bool young = false;  ///< so few keyframes that no plane of the map can be thin yet
+  /// [D] No keyframe will come: an image shows its landmarks that were not found in it as well, and
+  /// a plane is strong by fewer of them, since their depths are as good as they get.
+  bool finished = false;
 };
 
 /// A point's inlier band, as a multiple of eps_d: in RGB-D max(eps_d, 3 sigma_z(z)) at depth z_m in
@@ -76,7 +79,8 @@ double eps_of_sigma(double sigma, const PlaneScale& scale);
 bool is_sharp(double own_eps, const PlaneScale& scale);
 
 /// Whether a plane is as thick as the slab it was cut out by, in a map old enough for it to be
-/// thin: it stays weak. A mask alone is no excuse [D], what leaked into it may be clutter; mask and
+/// thin: it stays weak, unless the map is finished and many are on it, for the slab is a thin one
+/// then. A mask alone is no excuse [D], what leaked into it may be clutter; mask and
 /// depth together are, since a sensor bends what is far.
 bool may_be_slab(const Plane& plane, const PlanePoints& support, const PlaneContext& context);
 
@@ -85,9 +89,9 @@ bool may_be_slab(const Plane& plane, const PlanePoints& support, const PlaneCont
 PlaneMixtureOptions mixture_options(const PlaneScale& scale);
 
 /// Support below which the plane is weak. [D] Twice the option for one that was found without a
-/// mask and so has no second witness; three fifths of it for one with a mask that five keyframes
-/// have confirmed.
-int strong_support(const Plane& plane, const PlaneMappingOptions& options);
+/// mask and so has no second witness, four fifths of it in a finished map; three fifths for one
+/// with a mask that five keyframes have confirmed.
+int strong_support(const Plane& plane, const PlaneContext& context);
 
 /// Keyframes that must have seen a plane before it is more than weak. [D] One view of a monocular
 /// map is no evidence: its landmarks' errors run along the same rays.

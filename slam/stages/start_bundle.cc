@@ -278,9 +278,9 @@ std::optional<StartBundle> bundle_start(const Camera& camera, const FollowedCorn
   BundleProblem& problem = builder.problem();
   constexpr int kIterations = 10;
   deactivate_outliers(problem, std::numeric_limits<double>::infinity());
-  solve_window(problem, {kIterations, true, 1e-4});
+  solve_window(problem, {kIterations, RobustLoss::kHuber, 1e-4});
   deactivate_outliers(problem);
-  solve_window(problem, {kIterations, false, 1e-5});
+  solve_window(problem, {kIterations, RobustLoss::kSquared, 1e-5});
   deactivate_outliers(problem);
 
   StartBundle result;

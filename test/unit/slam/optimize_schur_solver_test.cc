@@ -36,10 +36,10 @@ TEST(SolveWindow, ReachesTheMinimumThatCeresDoes) {
     BundleProblem ours = perturbed_problem(depth, 0.0, random);
     BundleProblem theirs = ours;
     const double before = total_chi2(ours);
-    solve_window(ours, {30, false, 1e-9});
+    solve_window(ours, {30, RobustLoss::kSquared, 1e-9});
     BundleSolve solve;
     solve.iterations = 30;
-    solve.loss = BundleLoss::kSquared;
+    solve.loss = RobustLoss::kSquared;
     solve.function_tolerance = 1e-9;
     solve_bundle(theirs, solve);
     EXPECT_LT(total_chi2(ours), 0.1 * before);
@@ -54,11 +54,32 @@ TEST(SolveWindow, ReachesTheMinimumThatCeresDoes) {
   }
 }
 
+TEST(SolveWindow, WeighsSightsAsCeresDoes) {
+  Random random(seed_of("SolveWindow.WeighsSightsAsCeresDoes"));
+  for (const bool depth : {false, true}) {
+    BundleProblem ours = perturbed_problem(depth, 0.05, random);
+    // Cauchy's loss has one minimum only from near by.
+    solve_window(ours, {30, RobustLoss::kHuber, 1e-9});
+    deactivate_outliers(ours);
+    BundleProblem theirs = ours;
+    BundleSolve solve;
+    solve.iterations = 30;
+    solve.loss = RobustLoss::kCauchy;
+    solve.spread = measure_spread(ours);
+    solve.function_tolerance = 1e-9;
+    const double before = loss_of(ours, solve);
+    solve_window(ours, {30, RobustLoss::kCauchy, 1e-9, solve.spread});
+    solve_bundle(theirs, solve);
+    EXPECT_LT(loss_of(ours, solve), before);
+    EXPECT_NEAR(loss_of(ours, solve) / loss_of(theirs, solve), 1.0, 1e-5) << "depth " << depth;
+  }
+}
+
 TEST(SolveWindow, IsRobustAgainstOutliers) {
   Random random(seed_of("SolveWindow.IsRobustAgainstOutliers"));
   BundleProblem ours = perturbed_problem(false, 0.1, random);
   BundleProblem theirs = ours;
-  solve_window(ours, {30, true, 1e-9});
+  solve_window(ours, {30, RobustLoss::kHuber, 1e-9});
   BundleSolve solve;
   solve.iterations = 30;
   solve.function_tolerance = 1e-9;
@@ -74,7 +95,7 @@ TEST(SolveWindow, HoldsWhatIsFixed) {
   Random random(seed_of("SolveWindow.HoldsWhatIsFixed"));
   BundleProblem problem = perturbed_problem(false, 0.0, random);
   const BundleProblem before = problem;
-  solve_window(problem, {10, true, 1e-6});
+  solve_window(problem, {10, RobustLoss::kHuber, 1e-6});
   EXPECT_EQ(problem.poses[0], before.poses[0]);
   EXPECT_EQ(problem.poses[1], before.poses[1]);
   EXPECT_NE(problem.poses[2], before.poses[2]);
@@ -85,7 +106,7 @@ TEST(SolveWindow, MovesPointsAloneWhereEveryPoseIsFixed) {
   BundleProblem problem = perturbed_problem(false, 0.0, random);
   for (char& fixed : problem.fixed) fixed = 1;
   const double before = total_chi2(problem);
-  EXPECT_GT(solve_window(problem, {10, false, 1e-6}), 0);
+  EXPECT_GT(solve_window(problem, {10, RobustLoss::kSquared, 1e-6}), 0);
   EXPECT_LT(total_chi2(problem), before);
 }
 

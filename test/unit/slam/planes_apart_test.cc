@@ -31,7 +31,63 @@ TEST_P(TwoTables, OfOneHeightStayTwo) {
   for (const Plane& plane : map.planes) EXPECT_GT(plane.inliers, 110);
 }
 
+TEST_P(TwoTables, StayTwoWhenTheMapIsFinished) {
+  auto generator = test_generator();
+  MapBuilder builder(test_camera());
+  const auto views = add_pair(builder, {0, 0, 0}, {0, 0.5, 2.0});
+  const bool masks = GetParam();
+  add_all(builder, strew(generator, 120, {-1.0, 0.6, 1.6}, {0.7, 0, 0}, {0, 0, 0.6}, 0.004), views,
+          masks ? 1 : 0);
+  add_all(builder, strew(generator, 120, {0.3, 0.6, 1.6}, {0.7, 0, 0}, {0, 0, 0.6}, 0.004), views,
+          masks ? 2 : 0);
+  // Either masks tell them apart or the floor that is seen between them.
+  if (!masks) {
+    add_all(builder, strew(generator, 40, {-0.4, 1.2, 2.4}, {0.8, 0, 0}, {0, 0, 1.5}, 0.004), views,
+            0);
+  }
+  Map map = builder.build();
+  PlaneMapper mapper = mono_mapper();
+  PlaneMappingStats stats = map_planes(map, {0, 1, 1}, mapper);
+  mapper.finish(map, stats);
+  EXPECT_EQ(count_matching(map, kUp, {0, 0.6, 1.9}, 0.01), 2);
+}
+
 INSTANTIATE_TEST_SUITE_P(Masks, TwoTables, ::testing::Bool());
+
+TEST(PlaneMapper, PicturesOnABareWallAreOneWallWhenTheMapIsFinished) {
+  auto generator = test_generator();
+  MapBuilder builder(test_camera());
+  const auto views = add_pair(builder, {0, 0, 0}, {0, 0, 2});
+  for (const double x : {-1.0, 0.5}) {
+    add_all(builder, strew(generator, 120, {x, -0.3, 2.0}, {0.5, 0, 0}, {0, 0.6, 0}, 0.004), views,
+            0);
+  }
+  Map map = builder.build();
+  PlaneMapper mapper = mono_mapper();
+  PlaneMappingStats stats = map_planes(map, {0, 1, 1}, mapper);
+  ASSERT_EQ(map.planes.size(), 2U);
+  mapper.finish(map, stats);
+  EXPECT_EQ(map.planes.size(), 1U);
+  EXPECT_EQ(count_matching(map, -Vector3d::UnitZ(), {0, 0, 2.0}, 0.005), 1);
+}
+
+TEST(PlaneMapper, FewPreciseLandmarksAreAPlaneWhenTheMapIsFinished) {
+  auto generator = test_generator();
+  MapBuilder builder(test_camera());
+  std::vector<KeyframeId> views = add_pair(builder, {0, 0, 0}, {0, 0.5, 2.0});
+  for (const KeyframeId view : add_pair(builder, {0.3, 0, 0}, {0, 0.5, 2.0})) views.push_back(view);
+  // A growing map asks for sixty where no mask speaks for the plane.
+  add_all(builder, strew(generator, 40, {-0.4, 0.6, 1.6}, {0.8, 0, 0}, {0, 0, 0.6}, 0.001), views,
+          0);
+  Map map = builder.build();
+  PlaneMapper mapper = mono_mapper();
+  PlaneMappingStats stats = map_planes(map, views, mapper);
+  ASSERT_EQ(map.planes.size(), 1U);
+  EXPECT_TRUE((*map.planes.begin()).weak);
+  mapper.finish(map, stats);
+  ASSERT_EQ(map.planes.size(), 1U);
+  EXPECT_FALSE((*map.planes.begin()).weak);
+}
 
 class Stairs : public ::testing::TestWithParam<bool> {};
 

@@ -103,7 +103,7 @@ TEST(PlanesInMasks, LandmarksSeenFromElsewhereStayOut) {
           1);
   Map map = builder.build();
   map.keyframes.at(last).label_image = whole_image(1);
-  const PlaneContext context{PlaneMappingOptions(), {0.04, 0.02}, test_camera(), false};
+  const PlaneContext context{PlaneMappingOptions(), {0.04, 0.02, 0.04}, test_camera(), false};
   const KeyframePoints shown = gather_points(map, last, context);
   EXPECT_EQ(shown.size(), 8);
   EXPECT_EQ(shown.observed, 8);
@@ -111,14 +111,17 @@ TEST(PlanesInMasks, LandmarksSeenFromElsewhereStayOut) {
 
 TEST(PlanesInMasks, ManyKeyframesMakeUpForFewLandmarks) {
   const PlaneMappingOptions options;
+  PlaneContext context{options, {}, test_camera()};
   Plane plane;
   plane.label = 1;
   plane.observers = {0, 1};
-  EXPECT_EQ(strong_support(plane, options), options.strong_inliers);
+  EXPECT_EQ(strong_support(plane, context), options.strong_inliers);
   plane.observers = {0, 1, 2, 3, 4};
-  EXPECT_EQ(strong_support(plane, options), 18);
+  EXPECT_EQ(strong_support(plane, context), 18);
   plane.label = 0;
-  EXPECT_EQ(strong_support(plane, options), 2 * options.strong_inliers);
+  EXPECT_EQ(strong_support(plane, context), 2 * options.strong_inliers);
+  context.finished = true;
+  EXPECT_EQ(strong_support(plane, context), 24);
 }
 
 TEST(PlanesInMasks, ASlabOfClutterStaysWeakThoughAMaskShowsIt) {
@@ -132,7 +135,7 @@ TEST(PlanesInMasks, ASlabOfClutterStaysWeakThoughAMaskShowsIt) {
   }
   Plane plane;
   plane.label = 1;
-  PlaneContext context{PlaneMappingOptions(), {0.04, 0.02}, test_camera(), false};
+  PlaneContext context{PlaneMappingOptions(), {0.04, 0.02, 0.04}, test_camera(), false};
   EXPECT_TRUE(may_be_slab(plane, support, context));
   context.young = true;
   EXPECT_FALSE(may_be_slab(plane, support, context));
