@@ -37,9 +37,9 @@ struct BundleResult {
 
 /// Analytic Jacobians, Schur elimination, Huber; the global one by Ceres with num_threads = 1 (two
 /// are not repeatable), the local one by solve_window. Two passes with the outliers removed between
-/// and after, the second with Cauchy at the spread that most sights have. Poses,
-/// landmarks and observations of `map` are updated; planes are not touched. The first keyframe of
-/// the map (and, in mono, what fixes the gauge) is held.
+/// and after, the second with Cauchy at the spread that most sights have. Poses, landmarks and
+/// observations of `map` are updated; planes are not touched. The first keyframe of the map (and,
+/// in mono, what fixes the gauge) is held.
 BundleResult local_bundle(Map& map, const Camera& camera, KeyframeId centre,
                           const BundleOptions& options);
 /// All keyframes and landmarks. Where options.refine_focal is set, `camera` is updated and so are,

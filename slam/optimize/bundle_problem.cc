@@ -76,18 +76,18 @@ ceres::Solver::Options solver_options(const BundleSolve& solve, int free_keyfram
 
 std::unique_ptr<ceres::LossFunction> make_loss(const BundleProblem& problem,
                                                const BundleSolve& solve, bool depth) {
+  const double width =
+      std::sqrt(bend_of(solve.loss, solve.spread, problem.threshold(depth), depth));
   switch (solve.loss) {
     case RobustLoss::kSquared:
       return nullptr;
     case RobustLoss::kHuber:
-      return std::make_unique<ceres::HuberLoss>(
-          std::sqrt(depth ? problem.chi2_depth : problem.chi2_mono));
+      return std::make_unique<ceres::HuberLoss>(width);
     case RobustLoss::kCauchy:
       break;
   }
-  return std::make_unique<ceres::ScaledLoss>(
-      new ceres::CauchyLoss(std::sqrt(cauchy_width2(problem, solve.spread, depth))),
-      solve.spread.gain, ceres::TAKE_OWNERSHIP);
+  return std::make_unique<ceres::ScaledLoss>(new ceres::CauchyLoss(width), solve.spread.gain,
+                                             ceres::TAKE_OWNERSHIP);
 }
 
 }  // namespace
@@ -171,10 +171,6 @@ BundleProblem collect_whole_map(const Map& map, const Camera& camera,
   return collect_bundle(map, camera, keyframes, fixed, landmarks, options);
 }
 
-double cauchy_width2(const BundleProblem& problem, const ResidualSpread& spread, bool depth) {
-  return depth ? spread.depth * problem.chi2_depth : spread.mono * problem.chi2_mono;
-}
-
 ResidualSpread measure_spread(const BundleProblem& problem) {
   std::vector<double> mono, depth;
   for (const BundleObservation& seen : problem.observations) {
@@ -184,7 +180,8 @@ ResidualSpread measure_spread(const BundleProblem& problem) {
   ResidualSpread result{spread_of(mono, 2), spread_of(depth, 3), 1.0};
   double curvature = 0.0;
   const auto add = [&](const std::vector<double>& all, bool is_depth) {
-    const double width2 = cauchy_width2(problem, result, is_depth);
+    const double width2 =
+        bend_of(RobustLoss::kCauchy, result, problem.threshold(is_depth), is_depth);
     // Over all directions, that of a residual of two coordinates is the square of its weight.
     for (const double chi2 : all) curvature += std::pow(1.0 + chi2 / width2, -2.0);
   };

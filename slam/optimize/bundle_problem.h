@@ -35,9 +35,8 @@ struct BundleProblem {
   double chi2_depth = 0.0;
 
   bool has_depth() const;
-  double threshold(const BundleObservation& seen) const {
-    return seen.term.rows() == 3 ? chi2_depth : chi2_mono;
-  }
+  double threshold(bool depth) const { return depth ? chi2_depth : chi2_mono; }
+  double threshold(const BundleObservation& seen) const { return threshold(seen.term.rows() == 3); }
   double chi2(const BundleObservation& seen) const;
 };
 
@@ -59,10 +58,6 @@ enum BundleGroup { kPointGroup, kPoseGroup, kFocalGroup, kPlaneGroup };
 
 /// From the medians of the active observations, at the present poses and points.
 ResidualSpread measure_spread(const BundleProblem& problem);
-
-/// Square of Cauchy's width for a sight: 2.4 standard deviations, at which it is worth 95 % of
-/// least squares on normal errors.
-double cauchy_width2(const BundleProblem& problem, const ResidualSpread& spread, bool depth);
 
 struct BundleSolve {
   int iterations = 10;

@@ -31,8 +31,7 @@ struct PoseLoss {
   ResidualSpread spread;  ///< for Cauchy
 
   double width2(const Residual& residual) const {
-    if (loss != RobustLoss::kCauchy) return residual.threshold;
-    return residual.threshold * (residual.rows == 3 ? spread.depth : spread.mono);
+    return bend_of(loss, spread, residual.threshold, residual.rows == 3);
   }
 };
 

@@ -1,22 +1,9 @@
 #include "slam/optimize/robust_loss.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 namespace planecast::slam {
-
-double robust_cost(RobustLoss loss, double chi2, double width2) {
-  if (loss == RobustLoss::kCauchy) return width2 * std::log1p(chi2 / width2);
-  if (loss == RobustLoss::kSquared || chi2 <= width2) return chi2;
-  return 2.0 * std::sqrt(chi2 * width2) - width2;
-}
-
-double robust_weight(RobustLoss loss, double chi2, double width2) {
-  if (loss == RobustLoss::kCauchy) return width2 / (width2 + chi2);
-  if (loss == RobustLoss::kSquared || chi2 <= width2) return 1.0;
-  return std::sqrt(width2 / chi2);
-}
 
 double spread_of(std::vector<double>& chi2, int rows) {
   // Medians of chi2 with two and three degrees of freedom.

@@ -20,6 +20,24 @@ constexpr double kMaxDamping = 1e6;
 /// direction.
 constexpr double kBehindFactor = 1e4;
 
+/// Sum of the logarithms of factors of 1 and more, of which few are taken: they are most of a
+/// sight's cost.
+class LogarithmSum {
+ public:
+  void add(double factor) {
+    product_ *= factor;
+    if (product_ < kMost) return;
+    sum_ += std::log(product_);
+    product_ = 1.0;
+  }
+  double total() const { return sum_ + std::log(product_); }
+
+ private:
+  static constexpr double kMost = 1e200;
+  double product_ = 1.0;
+  double sum_ = 0.0;
+};
+
 /// An active observation, without what all share.
 struct Sight {
   int pose = 0;
@@ -29,7 +47,8 @@ struct Sight {
   double inverse_sigma = 0.0;
   double inverse_depth = 0.0;
   double threshold = 0.0;
-  double width2 = 0.0;  ///< see robust_cost()
+  double width2 = 0.0;          ///< see robust_cost()
+  double inverse_width2 = 0.0;  ///< 1 / width2
 };
 
 /// A state of the poses and points that are looked for.
@@ -41,14 +60,18 @@ struct State {
 class Window {
  public:
   Window(BundleProblem& problem, const SchurOptions& options)
-      : problem_(problem), loss_(options.loss), elimination_(count_free(problem)) {
+      : problem_(problem),
+        loss_(options.loss),
+        width2_mono_(bend_of(loss_, options.spread, problem.chi2_mono, false)),
+        width2_depth_(bend_of(loss_, options.spread, problem.chi2_depth, true)),
+        elimination_(count_free(problem)) {
     for (const PoseBlock& block : problem.poses) now_.poses.push_back(pose_from_block(block));
     now_.points = problem.points;
     int next = 0;
     for (const char fixed : problem.fixed) slot_.push_back(fixed != 0 ? kNone : next++);
     sights_.reserve(problem.observations.size());
     for (const BundleObservation& seen : problem.observations) {
-      if (seen.active) add(seen, options);
+      if (seen.active) add(seen);
     }
     point_begin_.push_back(sights_.size());
     derivatives_.resize(most_sights());
@@ -95,18 +118,17 @@ class Window {
     return static_cast<std::size_t>(std::count(problem.fixed.begin(), problem.fixed.end(), 0));
   }
 
-  void add(const BundleObservation& seen, const SchurOptions& options) {
+  void add(const BundleObservation& seen) {
     // One camera took all keyframes.
     camera_ = seen.term;
     if (sights_.empty() || sights_.back().point != seen.point) {
       point_begin_.push_back(sights_.size());
     }
     const double threshold = problem_.threshold(seen);
-    const double width2 = options.loss == RobustLoss::kCauchy
-                              ? cauchy_width2(problem_, options.spread, seen.term.rows() == 3)
-                              : threshold;
+    const double width2 = seen.term.rows() == 3 ? width2_depth_ : width2_mono_;
     sights_.push_back({seen.pose, seen.point, seen.term.rows(), seen.term.pixel,
-                       seen.term.inverse_sigma, seen.term.inverse_depth, threshold, width2});
+                       seen.term.inverse_sigma, seen.term.inverse_depth, threshold, width2,
+                       1.0 / width2});
     slots_.push_back(slot_[static_cast<std::size_t>(seen.pose)]);
   }
 
@@ -133,6 +155,7 @@ class Window {
 
   double cost(const State& state) const {
     double sum = 0.0;
+    LogarithmSum mono, depth;  // of Cauchy, by width
     double residual[3];
     for (const Sight& sight : sights_) {
       const Pose& pose = state.poses[static_cast<std::size_t>(sight.pose)];
@@ -142,9 +165,13 @@ class Window {
         chi2 = residual[0] * residual[0] + residual[1] * residual[1];
         if (sight.rows == 3) chi2 += residual[2] * residual[2];
       }
-      sum += robust_cost(loss_, chi2, sight.width2);
+      if (loss_ == RobustLoss::kCauchy) {
+        (sight.rows == 3 ? depth : mono).add(1.0 + chi2 * sight.inverse_width2);
+      } else {
+        sum += robust_cost(loss_, chi2, sight.width2);
+      }
     }
-    return sum;
+    return sum + width2_mono_ * mono.total() + width2_depth_ * depth.total();
   }
 
   /// A step (omega, v) moves the point in the camera by omega x p + v, so that the derivative of a
@@ -211,6 +238,8 @@ class Window {
 
   BundleProblem& problem_;
   RobustLoss loss_;
+  double width2_mono_;   ///< where the loss bends
+  double width2_depth_;  ///< the same for sights with depth
   PointElimination elimination_;
   ReprojectionTerm camera_ = ReprojectionTerm({}, 0.0, Eigen::Vector2d::Zero(), 1.0, 0.0);
   State now_;

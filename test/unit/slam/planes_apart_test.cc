@@ -12,17 +12,22 @@ namespace {
 
 using Eigen::Vector3d;
 
+/// Two tables of one height, 0.6 apart, in masks of their own or without.
+void add_two_tables(MapBuilder& builder, std::mt19937& generator,
+                    const std::vector<KeyframeId>& views, bool masks) {
+  add_all(builder, strew(generator, 120, {-1.0, 0.6, 1.6}, {0.7, 0, 0}, {0, 0, 0.6}, 0.004), views,
+          masks ? 1 : 0);
+  add_all(builder, strew(generator, 120, {0.3, 0.6, 1.6}, {0.7, 0, 0}, {0, 0, 0.6}, 0.004), views,
+          masks ? 2 : 0);
+}
+
 class TwoTables : public ::testing::TestWithParam<bool> {};
 
 TEST_P(TwoTables, OfOneHeightStayTwo) {
   auto generator = test_generator();
   MapBuilder builder(test_camera());
   const auto views = add_pair(builder, {0, 0, 0}, {0, 0.5, 2.0});
-  const bool masks = GetParam();
-  add_all(builder, strew(generator, 120, {-1.0, 0.6, 1.6}, {0.7, 0, 0}, {0, 0, 0.6}, 0.004), views,
-          masks ? 1 : 0);
-  add_all(builder, strew(generator, 120, {0.3, 0.6, 1.6}, {0.7, 0, 0}, {0, 0, 0.6}, 0.004), views,
-          masks ? 2 : 0);
+  add_two_tables(builder, generator, views, GetParam());
   Map map = builder.build();
   PlaneMapper mapper = mono_mapper();
   map_planes(map, {0, 1, 1}, mapper);
@@ -36,10 +41,7 @@ TEST_P(TwoTables, StayTwoWhenTheMapIsFinished) {
   MapBuilder builder(test_camera());
   const auto views = add_pair(builder, {0, 0, 0}, {0, 0.5, 2.0});
   const bool masks = GetParam();
-  add_all(builder, strew(generator, 120, {-1.0, 0.6, 1.6}, {0.7, 0, 0}, {0, 0, 0.6}, 0.004), views,
-          masks ? 1 : 0);
-  add_all(builder, strew(generator, 120, {0.3, 0.6, 1.6}, {0.7, 0, 0}, {0, 0, 0.6}, 0.004), views,
-          masks ? 2 : 0);
+  add_two_tables(builder, generator, views, masks);
   // Either masks tell them apart or the floor that is seen between them.
   if (!masks) {
     add_all(builder, strew(generator, 40, {-0.4, 1.2, 2.4}, {0.8, 0, 0}, {0, 0, 1.5}, 0.004), views,
