@@ -11,13 +11,14 @@
 namespace planecast::slam {
 namespace {
 
-/// Iterations of the local bundle's first, robust pass, [K].
-constexpr int kRobustIterations = 5;
-/// Where the local bundle's passes end. The first has only to tell outliers; for the second, 1e-4
-/// of the cost is far less than one standard deviation of any pose, and the next keyframe goes on
-/// from it.
-constexpr double kLocalRobustTolerance = 1e-1;
+/// Iterations of the local bundle's first pass, [K].
+constexpr int kLocalFirstIterations = 5;
+/// Where the local bundle's passes end. The first has only to tell outliers, for which one step
+/// mostly will do; the second ends where its step moved the poses by a seventh of their standard
+/// deviation, as the next keyframe goes on from it.
+constexpr double kLocalFirstTolerance = 3e-1;
 constexpr double kLocalTolerance = 1e-4;
+constexpr double kLocalPoseTolerance = 0.02;
 constexpr double kGlobalTolerance = 1e-5;
 
 int first_keyframe(const Map& map) {
@@ -50,29 +51,34 @@ ScaleGauge find_scale_gauge(const BundleProblem& problem) {
   return gauge;
 }
 
-struct Schedule {
-  int robust_iterations = 0;
+struct Pass {
   int iterations = 0;
-  double robust_tolerance = kGlobalTolerance;
+  RobustLoss loss = RobustLoss::kCauchy;
   double tolerance = kGlobalTolerance;
+};
+
+struct Schedule {
+  Pass first;  ///< to tell outliers
+  Pass second;
   bool refine_focal = false;
   double focal_sigma = 0.0;
   bool window = false;  ///< by solve_window
 };
 
-int solve(BundleProblem& problem, const Schedule& schedule, bool robust) {
-  const int iterations = robust ? schedule.robust_iterations : schedule.iterations;
-  const double tolerance = robust ? schedule.robust_tolerance : schedule.tolerance;
-  const RobustLoss loss = robust ? RobustLoss::kHuber : RobustLoss::kCauchy;
-  const ResidualSpread spread = robust ? ResidualSpread{} : measure_spread(problem);
-  if (schedule.window) return solve_window(problem, {iterations, loss, tolerance, spread});
+int solve(BundleProblem& problem, const Schedule& schedule, const Pass& pass) {
+  const ResidualSpread spread =
+      pass.loss == RobustLoss::kCauchy ? measure_spread(problem) : ResidualSpread{};
+  if (schedule.window) {
+    return solve_window(problem,
+                        {pass.iterations, pass.loss, pass.tolerance, spread, kLocalPoseTolerance});
+  }
   BundleSolve options;
   options.refine_focal = schedule.refine_focal;
   options.focal_sigma = schedule.focal_sigma;
-  options.iterations = iterations;
-  options.loss = loss;
+  options.iterations = pass.iterations;
+  options.loss = pass.loss;
   options.spread = spread;
-  options.function_tolerance = tolerance;
+  options.function_tolerance = pass.tolerance;
   return solve_bundle(problem, options);
 }
 
@@ -90,9 +96,9 @@ BundleResult run_bundle(BundleProblem& problem, const Schedule& schedule, Map& m
   // A single point behind a camera would stop the solver at its first step.
   deactivate_outliers(problem, std::numeric_limits<double>::infinity());
   result.rms_before_px = reprojection_rms_px(problem);
-  result.iterations = solve(problem, schedule, true);
+  result.iterations = solve(problem, schedule, schedule.first);
   deactivate_outliers(problem);
-  result.iterations += solve(problem, schedule, false);
+  result.iterations += solve(problem, schedule, schedule.second);
   deactivate_outliers(problem);
   if (gauge.other != kNone) restore_distance(problem, gauge.anchor, gauge.other, gauge.distance);
   result.rms_after_px = reprojection_rms_px(problem);
@@ -172,10 +178,8 @@ BundleResult local_bundle(Map& map, const Camera& camera, KeyframeId centre,
   if (std::find(fixed.begin(), fixed.end(), 1) == fixed.end()) fixed.front() = 1;
   BundleProblem problem = collect_bundle(map, camera, keyframes, fixed, landmarks, options);
   Schedule schedule;
-  schedule.robust_iterations = kRobustIterations;
-  schedule.iterations = options.iterations;
-  schedule.robust_tolerance = kLocalRobustTolerance;
-  schedule.tolerance = kLocalTolerance;
+  schedule.first = {kLocalFirstIterations, RobustLoss::kCauchy, kLocalFirstTolerance};
+  schedule.second = {options.iterations, RobustLoss::kCauchy, kLocalTolerance};
   schedule.window = true;
   return run_bundle(problem, schedule, map);
 }
@@ -185,8 +189,8 @@ BundleResult global_bundle(Map& map, Camera& camera, const BundleOptions& option
   BundleProblem problem = collect_whole_map(map, camera, options);
   Schedule schedule;
   // The start may be far off, as after a loop: outliers are told only once it has settled.
-  schedule.robust_iterations = options.iterations;
-  schedule.iterations = options.iterations;
+  schedule.first = {options.iterations, RobustLoss::kHuber, kGlobalTolerance};
+  schedule.second = {options.iterations, RobustLoss::kCauchy, kGlobalTolerance};
   schedule.refine_focal = options.refine_focal;
   schedule.focal_sigma = options.focal_sigma * std::sqrt(options.focal_independence);
   const BundleResult result = run_bundle(problem, schedule, map);

@@ -35,11 +35,12 @@ struct BundleResult {
   double focal_factor = 1.0;  ///< refined fx / given fx
 };
 
-/// Analytic Jacobians, Schur elimination, Huber; the global one by Ceres with num_threads = 1 (two
-/// are not repeatable), the local one by solve_window. Two passes with the outliers removed between
-/// and after, the second with Cauchy at the spread that most sights have. Poses, landmarks and
-/// observations of `map` are updated; planes are not touched. The first keyframe of the map (and,
-/// in mono, what fixes the gauge) is held.
+/// Analytic Jacobians, Schur elimination; the global one by Ceres with num_threads = 1 (two are not
+/// repeatable), the local one by solve_window. Two passes with the outliers removed between and
+/// after, with Cauchy at the spread that most sights have, but for the first pass of the global one
+/// (Huber), as its start may be far off. Poses, landmarks and observations of `map` are updated;
+/// planes are not touched. The first keyframe of the map (and, in mono, what fixes the gauge) is
+/// held.
 BundleResult local_bundle(Map& map, const Camera& camera, KeyframeId centre,
                           const BundleOptions& options);
 /// All keyframes and landmarks. Where options.refine_focal is set, `camera` is updated and so are,
@@ -67,9 +68,8 @@ struct JointResult {
 };
 
 /// Final joint refinement of poses, landmarks and planes (the paper's last equation): reprojection
-/// with Huber and (n.v + d)/plane_sigma with Cauchy, planes on the unit sphere x R. A monocular map
-/// keeps the distance between its first keyframe and the one farthest from it. No observation is
-/// removed.
+/// and (n.v + d)/plane_sigma with Cauchy, planes on the unit sphere x R. A monocular map keeps the
+/// distance between its first keyframe and the one farthest from it. No observation is removed.
 JointResult refine_jointly(Map& map, const Camera& camera, const JointOptions& options);
 
 }  // namespace planecast::slam

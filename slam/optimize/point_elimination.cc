@@ -114,7 +114,7 @@ PointElimination::PointElimination(std::size_t free_poses)
 
 void PointElimination::begin(double damping) {
   damping_ = damping;
-  expected_decrease_ = 0.0;
+  expected_decrease_ = pose_decrease_ = 0.0;
   unflushed_ = 0;
   gradients_.assign(free_, PoseStep::Zero());
   diagonals_.assign(free_, Diagonal{});
@@ -183,7 +183,8 @@ bool PointElimination::solve() {
     gradient.segment<6>(r) = gradients_[row];
   }
   solution_ = -system.selfadjointView<Eigen::Upper>().ldlt().solve(gradient);
-  expected_decrease_ -= solution_.dot(gradient);
+  pose_decrease_ = -solution_.dot(gradient);
+  expected_decrease_ += pose_decrease_;
   return solution_.allFinite();
 }
 

@@ -49,6 +49,9 @@ class PointElimination {
   bool solve();
   /// By how much the steps lower the sum of squares, were the residuals linear and undamped.
   double expected_decrease() const { return expected_decrease_; }
+  /// The poses' part of it, once the points follow them: by the covariance that the sum of squares
+  /// gives the poses, the squared length of their step.
+  double pose_decrease() const { return pose_decrease_; }
   Eigen::Ref<const PoseStep> step(int slot) const { return solution_.segment<6>(6 * slot); }
   /// A point's step that follows from those of the poses that see it.
   Eigen::Vector3d point_step(const Point& point, const int* slots, const Cross* cross,
@@ -66,6 +69,7 @@ class PointElimination {
   std::size_t free_;
   double damping_ = 0.0;
   double expected_decrease_ = 0.0;
+  double pose_decrease_ = 0.0;
   int unflushed_ = 0;
   std::vector<PoseStep> gradients_;  ///< per free pose
   std::vector<Diagonal> diagonals_;  ///< per free pose, before the points are eliminated

@@ -10,9 +10,6 @@
 namespace planecast::slam {
 namespace {
 
-/// In sigmas: far beyond every gate, yet small enough not to drown the rest of the problem.
-constexpr double kBehindResidual = 100.0;
-
 using ConstQuaternion = Eigen::Map<const Eigen::Quaterniond>;
 using ConstVector3 = Eigen::Map<const Eigen::Vector3d>;
 using Row7 = Eigen::Matrix<double, 1, 7>;
@@ -72,19 +69,13 @@ ReprojectionTerm::ReprojectionTerm(const Camera& camera, double depth_baseline_m
       cy(camera.cy),
       baseline_fx(depth_baseline_m * std::abs(camera.fx)) {}
 
-void ReprojectionTerm::evaluate(const double* pose, const double* point, double focal,
+bool ReprojectionTerm::evaluate(const double* pose, const double* point, double focal,
                                 double* residuals, double* by_pose, double* by_point,
                                 double* by_focal) const {
   const Eigen::Matrix3d rotation = ConstQuaternion(pose).toRotationMatrix();
   const Eigen::Vector3d p = rotation * ConstVector3(point) + ConstVector3(pose + 4);
   const int count = rows();
-  if (!(p.z() > 0.0)) {
-    for (int i = 0; i < count; ++i) residuals[i] = kBehindResidual;
-    if (by_pose != nullptr) std::fill_n(by_pose, 7 * count, 0.0);
-    if (by_point != nullptr) std::fill_n(by_point, 3 * count, 0.0);
-    if (by_focal != nullptr) std::fill_n(by_focal, count, 0.0);
-    return;
-  }
+  if (!(p.z() > 0.0)) return false;
   const double inverse_z = 1.0 / p.z();
   const double x = p.x() * inverse_z;
   const double y = p.y() * inverse_z;
@@ -112,6 +103,7 @@ void ReprojectionTerm::evaluate(const double* pose, const double* point, double 
     by_focal[1] = inverse_sigma * fy * y;
     if (count == 3) by_focal[2] = 0.0;
   }
+  return true;
 }
 
 double ReprojectionTerm::chi2(const Eigen::Vector3d& point_cam, double focal) const {

@@ -45,9 +45,10 @@ struct ReprojectionTerm {
   int rows() const { return inverse_depth > 0.0 ? 3 : 2; }
   /// Residuals over sigma: predicted minus measured pixel and, with depth, disparity. `focal`
   /// multiplies fx and fy. Jacobians (row major, `rows` x 7, 3, 1) are written where the pointer is
-  /// not null. A point that is not in front of the camera gives a large constant residual without
-  /// derivatives.
-  void evaluate(const double* pose, const double* point, double focal, double* residuals,
+  /// not null. False, and nothing written, for a point that is not in front of the camera: a solver
+  /// then takes a shorter step. Any residual for it would be low enough for Cauchy's loss to let
+  /// points go there.
+  bool evaluate(const double* pose, const double* point, double focal, double* residuals,
                 double* by_pose, double* by_point, double* by_focal) const;
   /// Sum of squared residuals of a point in the camera frame; infinite for one that is not in
   /// front.
@@ -67,10 +68,9 @@ class ReprojectionCost final : public ceres::SizedCostFunction<kRows, 7, 3> {
   explicit ReprojectionCost(const ReprojectionTerm& term) : term_(term) {}
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override {
-    term_.evaluate(parameters[0], parameters[1], 1.0, residuals,
-                   jacobians == nullptr ? nullptr : jacobians[0],
-                   jacobians == nullptr ? nullptr : jacobians[1], nullptr);
-    return true;
+    return term_.evaluate(parameters[0], parameters[1], 1.0, residuals,
+                          jacobians == nullptr ? nullptr : jacobians[0],
+                          jacobians == nullptr ? nullptr : jacobians[1], nullptr);
   }
 
  private:
@@ -84,11 +84,10 @@ class FocalReprojectionCost final : public ceres::SizedCostFunction<kRows, 7, 3,
   explicit FocalReprojectionCost(const ReprojectionTerm& term) : term_(term) {}
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override {
-    term_.evaluate(parameters[0], parameters[1], parameters[2][0], residuals,
-                   jacobians == nullptr ? nullptr : jacobians[0],
-                   jacobians == nullptr ? nullptr : jacobians[1],
-                   jacobians == nullptr ? nullptr : jacobians[2]);
-    return true;
+    return term_.evaluate(parameters[0], parameters[1], parameters[2][0], residuals,
+                          jacobians == nullptr ? nullptr : jacobians[0],
+                          jacobians == nullptr ? nullptr : jacobians[1],
+                          jacobians == nullptr ? nullptr : jacobians[2]);
   }
 
  private:

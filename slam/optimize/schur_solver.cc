@@ -64,6 +64,7 @@ class Window {
         loss_(options.loss),
         width2_mono_(bend_of(loss_, options.spread, problem.chi2_mono, false)),
         width2_depth_(bend_of(loss_, options.spread, problem.chi2_depth, true)),
+        pose_variance_(std::min(options.spread.mono, options.spread.depth)),
         elimination_(count_free(problem)) {
     for (const PoseBlock& block : problem.poses) now_.poses.push_back(pose_from_block(block));
     now_.points = problem.points;
@@ -101,7 +102,8 @@ class Window {
       const double left = loss_ == RobustLoss::kSquared
                               ? std::abs(elimination_.expected_decrease() - decrease)
                               : decrease;
-      const bool converged = std::min(decrease, left) < options.function_tolerance * now;
+      const bool converged = std::min(decrease, left) < options.function_tolerance * now ||
+                             has_settled(options.pose_tolerance);
       now = next;
       damping = std::max(0.1 * damping, kLeastDamping);
       if (converged) break;
@@ -114,6 +116,13 @@ class Window {
   }
 
  private:
+  /// Whether the last step was a small one for the poses.
+  bool has_settled(double tolerance) const {
+    const double moved = elimination_.pose_decrease();
+    const double freedom = 6.0 * static_cast<double>(count_free(problem_));
+    return loss_ == RobustLoss::kCauchy && moved < tolerance * freedom * pose_variance_;
+  }
+
   static std::size_t count_free(const BundleProblem& problem) {
     return static_cast<std::size_t>(std::count(problem.fixed.begin(), problem.fixed.end(), 0));
   }
@@ -238,8 +247,9 @@ class Window {
 
   BundleProblem& problem_;
   RobustLoss loss_;
-  double width2_mono_;   ///< where the loss bends
-  double width2_depth_;  ///< the same for sights with depth
+  double width2_mono_;    ///< where the loss bends
+  double width2_depth_;   ///< the same for sights with depth
+  double pose_variance_;  ///< in the units of the sum of squares
   PointElimination elimination_;
   ReprojectionTerm camera_ = ReprojectionTerm({}, 0.0, Eigen::Vector2d::Zero(), 1.0, 0.0);
   State now_;

@@ -9,6 +9,10 @@ struct SchurOptions {
   RobustLoss loss = RobustLoss::kHuber;
   double function_tolerance = 1e-4;  ///< relative change of the cost that ends it
   ResidualSpread spread = {};        ///< for Cauchy
+  /// Cauchy ends also with a step by which no more is left to change: the mean square of what it
+  /// moves the poses by, in their own standard deviations. What goes on are points that few sights
+  /// pull to and fro.
+  double pose_tolerance = 0.0;
 };
 
 /// Moves free poses and points to the least cost of the active observations, as solve_bundle does,

@@ -139,7 +139,7 @@ TEST(CentreDistanceCost, JacobianIsTheNumericOne) {
   }
 }
 
-TEST(ReprojectionCost, IsZeroAtTheTruthAndFlatBehindTheCamera) {
+TEST(ReprojectionCost, IsZeroAtTheTruthAndHasNoValueBehindTheCamera) {
   const Camera camera = synthetic::camera();
   const Pose pose = pose_at({0.1, 0.2, -0.1}, {0.1, 0.0, 0.2});
   const Eigen::Vector3d point(0.3, -0.2, 4.0);
@@ -150,9 +150,8 @@ TEST(ReprojectionCost, IsZeroAtTheTruthAndFlatBehindTheCamera) {
   const Eigen::Vector3d behind(0.0, 0.0, -4.0);
   EXPECT_TRUE(std::isinf(term.chi2(pose_from_block(block) * behind, 1.0)));
   double residuals[3], by_pose[21], by_point[9];
-  term.evaluate(block.data(), behind.data(), 1.0, residuals, by_pose, by_point, nullptr);
-  for (const double derivative : by_pose) EXPECT_EQ(derivative, 0.0);
-  for (const double derivative : by_point) EXPECT_EQ(derivative, 0.0);
+  EXPECT_FALSE(
+      term.evaluate(block.data(), behind.data(), 1.0, residuals, by_pose, by_point, nullptr));
 }
 
 TEST(PoseManifold, MinusUndoesPlus) {

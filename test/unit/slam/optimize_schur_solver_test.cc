@@ -75,6 +75,30 @@ TEST(SolveWindow, WeighsSightsAsCeresDoes) {
   }
 }
 
+TEST(SolveWindow, EndsWherePosesHaveSettled) {
+  Random random(seed_of("SolveWindow.EndsWherePosesHaveSettled"));
+  for (const bool depth : {false, true}) {
+    BundleProblem start = perturbed_problem(depth, 0.05, random);
+    solve_window(start, {30, RobustLoss::kHuber, 1e-1});
+    deactivate_outliers(start);
+    const ResidualSpread spread = measure_spread(start);
+    BundleProblem minimum = start;
+    BundleProblem settled = start;
+    const int all = solve_window(minimum, {50, RobustLoss::kCauchy, 1e-12, spread});
+    EXPECT_LT(solve_window(settled, {50, RobustLoss::kCauchy, 1e-12, spread, 0.02}), all);
+    const auto squared_distance = [&](const BundleProblem& problem) {
+      double sum = 0.0;
+      for (std::size_t i = 0; i < problem.poses.size(); ++i) {
+        sum += (pose_from_block(problem.poses[i]).inverse().translation() -
+                pose_from_block(minimum.poses[i]).inverse().translation())
+                   .squaredNorm();
+      }
+      return sum;
+    };
+    EXPECT_LT(squared_distance(settled), 0.05 * squared_distance(start)) << "depth " << depth;
+  }
+}
+
 TEST(SolveWindow, IsRobustAgainstOutliers) {
   Random random(seed_of("SolveWindow.IsRobustAgainstOutliers"));
   BundleProblem ours = perturbed_problem(false, 0.1, random);
