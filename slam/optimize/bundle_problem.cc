@@ -48,6 +48,13 @@ std::vector<Pose> pose_matrices(const BundleProblem& problem) {
   return poses;
 }
 
+double chi2_of(const BundleProblem& problem, const std::vector<Pose>& poses,
+               const BundleObservation& seen) {
+  return seen.term.chi2(poses[static_cast<std::size_t>(seen.pose)] *
+                            problem.points[static_cast<std::size_t>(seen.point)],
+                        problem.focal_factor);
+}
+
 bool is_determined(int observations, bool depth) { return observations >= (depth ? 1 : 2); }
 
 std::unique_ptr<ceres::CostFunction> make_cost(const ReprojectionTerm& term, bool refine_focal) {
@@ -172,9 +179,11 @@ BundleProblem collect_whole_map(const Map& map, const Camera& camera,
 }
 
 ResidualSpread measure_spread(const BundleProblem& problem) {
+  const std::vector<Pose> poses = pose_matrices(problem);
   std::vector<double> mono, depth;
   for (const BundleObservation& seen : problem.observations) {
-    if (seen.active) (seen.term.rows() == 3 ? depth : mono).push_back(problem.chi2(seen));
+    if (!seen.active) continue;
+    (seen.term.rows() == 3 ? depth : mono).push_back(chi2_of(problem, poses, seen));
   }
   const std::size_t count = mono.size() + depth.size();
   ResidualSpread result{spread_of(mono, 2), spread_of(depth, 3), 1.0};
@@ -183,7 +192,10 @@ ResidualSpread measure_spread(const BundleProblem& problem) {
     const double width2 =
         bend_of(RobustLoss::kCauchy, result, problem.threshold(is_depth), is_depth);
     // Over all directions, that of a residual of two coordinates is the square of its weight.
-    for (const double chi2 : all) curvature += std::pow(1.0 + chi2 / width2, -2.0);
+    for (const double chi2 : all) {
+      const double weight = robust_weight(RobustLoss::kCauchy, chi2, width2);
+      curvature += weight * weight;
+    }
   };
   add(mono, false);
   add(depth, true);
@@ -194,10 +206,11 @@ ResidualSpread measure_spread(const BundleProblem& problem) {
 double loss_of(const BundleProblem& problem, const BundleSolve& solve) {
   const std::unique_ptr<ceres::LossFunction> loss_mono = make_loss(problem, solve, false);
   const std::unique_ptr<ceres::LossFunction> loss_depth = make_loss(problem, solve, true);
+  const std::vector<Pose> poses = pose_matrices(problem);
   double sum = 0.0;
   for (const BundleObservation& seen : problem.observations) {
     if (!seen.active) continue;
-    const double chi2 = problem.chi2(seen);
+    const double chi2 = chi2_of(problem, poses, seen);
     const ceres::LossFunction* loss = seen.term.rows() == 3 ? loss_depth.get() : loss_mono.get();
     std::array<double, 3> value = {chi2, 1.0, 0.0};
     if (loss != nullptr) loss->Evaluate(chi2, value.data());
@@ -264,9 +277,7 @@ int deactivate_outliers(BundleProblem& problem, double gate) {
   std::vector<char> depth(problem.points.size(), 0);
   const std::vector<Pose> poses = pose_matrices(problem);
   for (BundleObservation& seen : problem.observations) {
-    const double chi2 = seen.term.chi2(poses[static_cast<std::size_t>(seen.pose)] *
-                                           problem.points[static_cast<std::size_t>(seen.point)],
-                                       problem.focal_factor);
+    const double chi2 = chi2_of(problem, poses, seen);
     seen.active = std::isfinite(chi2) && chi2 <= gate * problem.threshold(seen);
     if (!seen.active) continue;
     ++left[static_cast<std::size_t>(seen.point)];
