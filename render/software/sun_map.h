@@ -20,7 +20,7 @@ class SunMap {
             const PosedMeshes& meshes, float detail_texels);
   const ShadowProjection& projection() const { return projection_; }
   /// Rows of size() values, 0 nearest to the sun, 1 where nothing is.
-  const float* depths() const { return &blocks_.front()[0]; }
+  const float* depths() const { return reinterpret_cast<const float*>(blocks_.data()); }
   int size() const { return size_; }
 
  private:
