@@ -234,7 +234,8 @@ class FrameComparison {
  public:
   FrameComparison(const Reconstruction& reconstruction, const AnchorFrame& anchor,
                   const TrackOptions& options, TracksResult& result, std::vector<double>& errors)
-      : camera_(reconstruction.camera),
+      : map_points_(reconstruction.points),
+        camera_(reconstruction.camera),
         anchor_(anchor),
         options_(options),
         result_(result),
@@ -242,12 +243,35 @@ class FrameComparison {
 
   void add(const slam::FrameInput& frame, const slam::Pose& pose) {
     const PictureSizes pictures = to_pictures(frame.image);
+    look_at_map(pose);
     const int before = result_.visible;
     for (const AnchoredPoint& point : anchor_.points) add_point(frame, pictures, pose, point);
     result_.frames += result_.visible > before ? 1 : 0;
   }
 
  private:
+  struct SeenPoint {
+    Eigen::Vector2d pixel;  ///< raw
+    double z = 0.0;
+  };
+
+  void look_at_map(const slam::Pose& pose) {
+    seen_.clear();
+    const slam::Pose cam_from_world = pose.inverse();
+    for (const MapPoint& point : map_points_) {
+      const auto pixel = raw_pixel(camera_, pose, point.position);
+      if (!pixel || !camera_.contains(*pixel, 0.0)) continue;
+      seen_.push_back({*pixel, (cam_from_world * point.position).z()});
+    }
+  }
+
+  bool is_hidden(const Eigen::Vector2d& pixel, double z) const {
+    return std::any_of(seen_.begin(), seen_.end(), [&](const SeenPoint& seen) {
+      return seen.z < (1.0 - options_.hidden_share) * z &&
+             (seen.pixel - pixel).norm() < options_.hidden_px;
+    });
+  }
+
   void add_point(const slam::FrameInput& frame, const PictureSizes& pictures,
                  const slam::Pose& pose, const AnchoredPoint& point) {
     const auto drawn = raw_pixel(camera_, pose, point.position);
@@ -258,6 +282,7 @@ class FrameComparison {
     if (!agrees_with_depth(frame.depth, pose, *drawn, point.position, options_.depth_tolerance)) {
       return;
     }
+    if (is_hidden(*drawn, (pose.inverse() * point.position).z())) return;
     const auto derivative = frame_from_anchor(camera_, anchor_, pose, point);
     if (!derivative) return;
     const double zoom = std::sqrt(std::abs(derivative->determinant()));
@@ -275,11 +300,13 @@ class FrameComparison {
     errors_.push_back((found->cast<double>() - *drawn).norm());
   }
 
+  const std::vector<MapPoint>& map_points_;
   const slam::Camera& camera_;
   const AnchorFrame& anchor_;
   const TrackOptions& options_;
   TracksResult& result_;
   std::vector<double>& errors_;
+  std::vector<SeenPoint> seen_;  ///< of the map, in the frame at hand
 };
 
 }  // namespace

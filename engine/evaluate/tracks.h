@@ -25,6 +25,8 @@ struct TrackOptions {
   double max_slant_deg = 78.0;     ///< nor planes seen flatter
   double max_zoom = 2.5;           ///< nor patches that much larger or smaller than at the anchor
   double depth_tolerance = 0.04;   ///< with depth images: nor points this share before or behind
+  double hidden_px = 8.0;          ///< nor points so near to where a map point is seen that is
+  double hidden_share = 0.02;      ///< nearer than they are by this share of the distance
 };
 
 /// How content anchored at one frame keeps to the picture's own texture in the others, without any
@@ -43,7 +45,8 @@ struct TracksResult {
 /// Anchors textured points of a plane by hit test at one frame (by default, of the first ten in
 /// equal steps the one with most candidates) and compares where each is projected in every other
 /// frame with where its texture is found there: its patch, warped by the plane, is aligned to
-/// sub-pixels near the projection and back from there to the first frame. Pixels are raw ones.
+/// sub-pixels near the projection and back from there to the first frame. A point that something
+/// of the map stands before does not count as visible. Pixels are raw ones.
 /// Candidates lie where the map has points of that plane, so that they are on it and not before it.
 /// Throws UserError for frames and planes that are not there and when no point is found.
 TracksResult evaluate_tracks(const Reconstruction& reconstruction, Sequence& sequence,

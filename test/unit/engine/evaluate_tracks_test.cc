@@ -62,6 +62,26 @@ TEST(Tracks, MeasureWhatIsWrong) {
   EXPECT_GT(result.compared_share(), 0.9);
 }
 
+TEST(Tracks, LeaveOutWhatTheMapStandsBefore) {
+  Reconstruction world = world_with_points();
+  const TablePrint print = blots();
+  PictureSequence sequence = film_table(world, print);
+  const TracksResult open = evaluate_tracks(world, sequence);
+  // Half of the table's points get one of another plane a third of the way to the first camera.
+  const Eigen::Vector3d centre = world.frames.front().world_from_cam->translation();
+  const std::vector<MapPoint> table = world.points;
+  for (const MapPoint& point : table) {
+    if (point.position.x() < 0.0) continue;
+    MapPoint before = point;
+    before.position += (centre - point.position) / 3.0;
+    before.plane = slam::kNone;
+    world.points.push_back(before);
+  }
+  const TracksResult hidden = evaluate_tracks(world, sequence);
+  EXPECT_LT(hidden.visible, open.visible);
+  EXPECT_GT(hidden.visible, 0);
+}
+
 TEST(Tracks, SaysWhatIsMissing) {
   Reconstruction world = world_with_points();
   const TablePrint print = blots();
