@@ -65,12 +65,24 @@ std::optional<Eigen::Vector3d> on_plane(const PlaneRecord& plane, const Ray& ray
   return ray.origin + along * ray.direction;
 }
 
-/// Where content at a world point is drawn; nothing behind the camera.
+struct SeenPoint {
+  Eigen::Vector2d pixel;  ///< raw
+  double z = 0.0;
+};
+
+/// Where a world point is seen; nothing behind the camera.
+std::optional<SeenPoint> seen_from(const slam::Camera& camera, const slam::Pose& cam_from_world,
+                                   const Eigen::Vector3d& point) {
+  const Eigen::Vector3d p = cam_from_world * point;
+  if (p.z() <= 0.0) return std::nullopt;
+  return SeenPoint{camera.distort(camera.project(p)), p.z()};
+}
+
 std::optional<Eigen::Vector2d> raw_pixel(const slam::Camera& camera, const slam::Pose& pose,
                                          const Eigen::Vector3d& point) {
-  const Eigen::Vector3d p = pose.inverse() * point;
-  if (p.z() <= 0.0) return std::nullopt;
-  return camera.distort(camera.project(p));
+  const auto seen = seen_from(camera, pose.inverse(), point);
+  if (!seen) return std::nullopt;
+  return seen->pixel;
 }
 
 bool agrees_with_depth(const cv::Mat& depth, const slam::Pose& pose, const Eigen::Vector2d& pixel,
@@ -250,39 +262,34 @@ class FrameComparison {
   }
 
  private:
-  struct SeenPoint {
-    Eigen::Vector2d pixel;  ///< raw
-    double z = 0.0;
-  };
-
   void look_at_map(const slam::Pose& pose) {
     seen_.clear();
     const slam::Pose cam_from_world = pose.inverse();
     for (const MapPoint& point : map_points_) {
-      const auto pixel = raw_pixel(camera_, pose, point.position);
-      if (!pixel || !camera_.contains(*pixel, 0.0)) continue;
-      seen_.push_back({*pixel, (cam_from_world * point.position).z()});
+      const auto seen = seen_from(camera_, cam_from_world, point.position);
+      if (seen && camera_.contains(seen->pixel, 0.0)) seen_.push_back(*seen);
     }
   }
 
-  bool is_hidden(const Eigen::Vector2d& pixel, double z) const {
+  bool is_hidden(const SeenPoint& drawn) const {
     return std::any_of(seen_.begin(), seen_.end(), [&](const SeenPoint& seen) {
-      return seen.z < (1.0 - options_.hidden_share) * z &&
-             (seen.pixel - pixel).norm() < options_.hidden_px;
+      return seen.z < (1.0 - options_.hidden_share) * drawn.z &&
+             (seen.pixel - drawn.pixel).norm() < options_.hidden_px;
     });
   }
 
   void add_point(const slam::FrameInput& frame, const PictureSizes& pictures,
                  const slam::Pose& pose, const AnchoredPoint& point) {
-    const auto drawn = raw_pixel(camera_, pose, point.position);
-    if (!drawn || !camera_.contains(*drawn, options_.border_px)) return;
+    const auto drawn = seen_from(camera_, pose.inverse(), point.position);
+    if (!drawn || !camera_.contains(drawn->pixel, options_.border_px)) return;
     const Eigen::Vector3d to_camera = (pose.translation() - point.position).normalized();
     const double least = std::cos(options_.max_slant_deg * std::numbers::pi / 180.0);
     if (anchor_.plane->normal.dot(to_camera) < least) return;
-    if (!agrees_with_depth(frame.depth, pose, *drawn, point.position, options_.depth_tolerance)) {
+    if (!agrees_with_depth(frame.depth, pose, drawn->pixel, point.position,
+                           options_.depth_tolerance)) {
       return;
     }
-    if (is_hidden(*drawn, (pose.inverse() * point.position).z())) return;
+    if (is_hidden(*drawn)) return;
     const auto derivative = frame_from_anchor(camera_, anchor_, pose, point);
     if (!derivative) return;
     const double zoom = std::sqrt(std::abs(derivative->determinant()));
@@ -290,14 +297,14 @@ class FrameComparison {
     ++result_.visible;
     const Eigen::Vector2f at_anchor = point.pixel.cast<float>();
     const Eigen::Matrix2f anchor_per_frame = derivative->inverse().cast<float>();
-    const auto found = find_patch(anchor_.pictures, at_anchor, pictures, drawn->cast<float>(),
+    const auto found = find_patch(anchor_.pictures, at_anchor, pictures, drawn->pixel.cast<float>(),
                                   anchor_per_frame, options_);
     if (!found) return;
     const auto back = find_patch(pictures, *found, anchor_.pictures, at_anchor,
                                  derivative->cast<float>(), options_);
     if (!back || (*back - at_anchor).norm() > options_.max_return_px) return;
     ++result_.compared;
-    errors_.push_back((found->cast<double>() - *drawn).norm());
+    errors_.push_back((found->cast<double>() - drawn->pixel).norm());
   }
 
   const std::vector<MapPoint>& map_points_;

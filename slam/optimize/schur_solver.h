@@ -9,9 +9,9 @@ struct SchurOptions {
   RobustLoss loss = RobustLoss::kHuber;
   double function_tolerance = 1e-4;  ///< relative change of the cost that ends it
   ResidualSpread spread = {};        ///< for Cauchy
-  /// Cauchy ends also with a step by which no more is left to change: the mean square of what it
-  /// moves the poses by, in their own standard deviations. What goes on are points that few sights
-  /// pull to and fro.
+  /// Cauchy also ends with a step that moves the poses by less than this: the mean square over
+  /// their degrees of freedom, in standard deviations. What would go on changing are points that
+  /// few sights pull to and fro.
   double pose_tolerance = 0.0;
 };
 

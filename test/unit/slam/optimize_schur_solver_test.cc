@@ -30,6 +30,15 @@ BundleProblem perturbed_problem(bool depth, double outlier_share, Random& random
   return problem;
 }
 
+/// The same with 5 % outliers, most of which are told: Cauchy's loss has one minimum only from near
+/// by.
+BundleProblem problem_near_minimum(bool depth, double tolerance, Random& random) {
+  BundleProblem problem = perturbed_problem(depth, 0.05, random);
+  solve_window(problem, {30, RobustLoss::kHuber, tolerance});
+  deactivate_outliers(problem);
+  return problem;
+}
+
 TEST(SolveWindow, ReachesTheMinimumThatCeresDoes) {
   Random random(seed_of("SolveWindow.ReachesTheMinimumThatCeresDoes"));
   for (const bool depth : {false, true}) {
@@ -57,10 +66,7 @@ TEST(SolveWindow, ReachesTheMinimumThatCeresDoes) {
 TEST(SolveWindow, WeighsSightsAsCeresDoes) {
   Random random(seed_of("SolveWindow.WeighsSightsAsCeresDoes"));
   for (const bool depth : {false, true}) {
-    BundleProblem ours = perturbed_problem(depth, 0.05, random);
-    // Cauchy's loss has one minimum only from near by.
-    solve_window(ours, {30, RobustLoss::kHuber, 1e-9});
-    deactivate_outliers(ours);
+    BundleProblem ours = problem_near_minimum(depth, 1e-9, random);
     BundleProblem theirs = ours;
     BundleSolve solve;
     solve.iterations = 30;
@@ -78,9 +84,7 @@ TEST(SolveWindow, WeighsSightsAsCeresDoes) {
 TEST(SolveWindow, EndsWherePosesHaveSettled) {
   Random random(seed_of("SolveWindow.EndsWherePosesHaveSettled"));
   for (const bool depth : {false, true}) {
-    BundleProblem start = perturbed_problem(depth, 0.05, random);
-    solve_window(start, {30, RobustLoss::kHuber, 1e-1});
-    deactivate_outliers(start);
+    const BundleProblem start = problem_near_minimum(depth, 1e-1, random);
     const ResidualSpread spread = measure_spread(start);
     BundleProblem minimum = start;
     BundleProblem settled = start;
