@@ -330,35 +330,51 @@ FinishResult System::finish() {
   return result;
 }
 
-std::optional<PoseEstimate> System::localise(
-    ImageFeatures image, const std::optional<Pose>& prior_cam_from_world) const {
-  if (!initialised()) return std::nullopt;
-  const LocaliseOptions& options = options_.track.localise;
-  if (prior_cam_from_world && options_.track.front_end == FrontEnd::kPatches) {
-    std::vector<LandmarkId> everywhere;
-    for (const Landmark& landmark : map().landmarks) everywhere.push_back(landmark.id);
-    LocaliseByPatchesOptions patches = options_.track.patches;
-    patches.match.max_matches = options_.localise_matches;
-    std::optional<PoseEstimate> estimate =
-        localise_by_patches(map(), camera_, image, *prior_cam_from_world, everywhere, patches);
-    if (estimate) return estimate;
-  }
-  if (image.features == nullptr) tracker_preparer_->extract(image);
+std::optional<PoseEstimate> System::localise_from(const ImageFeatures& image,
+                                                  const Pose& guess_cam_from_world) const {
+  if (options_.track.front_end != FrontEnd::kPatches) return std::nullopt;
+  std::vector<LandmarkId> everywhere;
+  for (const Landmark& landmark : map().landmarks) everywhere.push_back(landmark.id);
+  LocaliseByPatchesOptions patches = options_.track.patches;
+  patches.match.max_matches = options_.localise_matches;
+  patches.min_share = options_.localise_min_share;
+  return localise_by_patches(map(), camera_, image, guess_cam_from_world, everywhere, patches);
+}
+
+std::optional<PoseEstimate> System::localise_by_keypoints(
+    const Features& features, const std::optional<Pose>& prior_cam_from_world) const {
   if (prior_cam_from_world) {
+    const LocaliseOptions& options = options_.track.localise;
     PoseEstimate prior;
     prior.cam_from_world = *prior_cam_from_world;
-    prior.matches.assign(image.features->keypoints.size(), kNone);
+    prior.matches.assign(features.keypoints.size(), kNone);
     std::vector<KeyframeId> everywhere;
     for (const Keyframe& keyframe : map().keyframes) everywhere.push_back(keyframe.id);
     PoseEstimate estimate =
-        search_local_map(map(), camera_, *image.features, prior, everywhere, 2.0, options);
+        search_local_map(map(), camera_, features, prior, everywhere, 2.0, options);
     if (estimate.inliers >= options_.track.min_inliers) {
-      estimate =
-          search_local_map(map(), camera_, *image.features, estimate, everywhere, 1.0, options);
+      estimate = search_local_map(map(), camera_, features, estimate, everywhere, 1.0, options);
       if (estimate.inliers >= options_.track.min_inliers) return estimate;
     }
   }
-  return relocalise(map(), camera_, *image.features, options_.track.relocalise);
+  return relocalise(map(), camera_, features, options_.track.relocalise);
+}
+
+std::optional<PoseEstimate> System::localise(ImageFeatures image,
+                                             const std::vector<Pose>& priors_cam_from_world) const {
+  if (!initialised()) return std::nullopt;
+  for (const Pose& prior : priors_cam_from_world) {
+    std::optional<PoseEstimate> estimate = localise_from(image, prior);
+    if (estimate) return estimate;
+  }
+  if (image.features == nullptr) tracker_preparer_->extract(image);
+  std::optional<Pose> prior;
+  if (!priors_cam_from_world.empty()) prior = priors_cam_from_world.front();
+  std::optional<PoseEstimate> coarse = localise_by_keypoints(*image.features, prior);
+  if (!coarse) return std::nullopt;
+  // Keypoints are good to a pixel, which leaves the distance to a far wall open.
+  std::optional<PoseEstimate> fine = localise_from(image, coarse->cam_from_world);
+  return fine ? fine : coarse;
 }
 
 }  // namespace planecast::slam

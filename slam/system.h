@@ -40,6 +40,9 @@ struct SystemOptions {
   int restart_after_lost = 20;  ///< frames lost with fewer than restart_keyframes: start again
   int restart_keyframes = 5;
   int localise_matches = 600;  ///< landmarks a frame, in localise()
+  /// Of the landmarks in a frame's field of view, in localise(): the finished map knows many that
+  /// walls hide there.
+  double localise_min_share = 0.15;
   bool refine_jointly = true;  ///< final refinement with the point-plane term
   InitialiseOptions initialise;
   TrackOptions track;
@@ -102,10 +105,10 @@ class System {
   /// All sights aligned anew, global bundle adjustment (with the focal length where it was
   /// guessed), planes after it, and the joint refinement.
   FinishResult finish();
-  /// Pose of a frame in the finished map; from the prior if that is near enough, else by
-  /// relocalisation.
+  /// Pose of a frame in the finished map: by the landmarks' looks from the first prior that is near
+  /// enough, else from where keypoints put it.
   std::optional<PoseEstimate> localise(ImageFeatures image,
-                                       const std::optional<Pose>& prior_cam_from_world) const;
+                                       const std::vector<Pose>& priors_cam_from_world) const;
 
   /// The map as the tracker sees it.
   const Map& map() const { return *visible_map_; }
@@ -142,6 +145,12 @@ class System {
   void begin_loop(const Mapped& mapped, int inserted_at);
   void enqueue_open_loop(int frame_index);
   void restart();
+  /// The two ways of localise(): by the landmarks' looks about a nearly known pose, and by
+  /// keypoints from a roughly known one or none.
+  std::optional<PoseEstimate> localise_from(const ImageFeatures& image,
+                                            const Pose& guess_cam_from_world) const;
+  std::optional<PoseEstimate> localise_by_keypoints(
+      const Features& features, const std::optional<Pose>& prior_cam_from_world) const;
 
   SystemOptions options_;
   Camera camera_;

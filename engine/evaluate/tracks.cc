@@ -57,10 +57,15 @@ struct AnchorFrame {
   std::vector<AnchoredPoint> points;
 };
 
+/// Signed distance, positive on the side that the normal shows to.
+double height_over(const PlaneRecord& plane, const Eigen::Vector3d& point) {
+  return plane.normal.dot(point) + plane.offset;
+}
+
 std::optional<Eigen::Vector3d> on_plane(const PlaneRecord& plane, const Ray& ray) {
   const double slope = plane.normal.dot(ray.direction);
   if (std::abs(slope) < 1e-9) return std::nullopt;
-  const double along = -(plane.normal.dot(ray.origin) + plane.offset) / slope;
+  const double along = -height_over(plane, ray.origin) / slope;
   if (along <= 0.0) return std::nullopt;
   return ray.origin + along * ray.direction;
 }
@@ -106,35 +111,47 @@ std::vector<const FrameRecord*> posed_frames(const Reconstruction& reconstructio
   return posed;
 }
 
-/// Textured pixels of one plane in a frame, strongest first, spread out: corners near where the
-/// plane's map points are seen.
+/// Where in a frame texture is known to lie on a plane: near its map points, but not near those
+/// that stand above it. What lies on a desk is not the desk.
+cv::Mat mask_of_plane(const Reconstruction& reconstruction, const slam::FrameInput& frame,
+                      const slam::Pose& pose, const PlaneRecord& plane,
+                      const TrackOptions& options) {
+  const slam::Camera& camera = reconstruction.camera;
+  const double side = height_over(plane, pose.translation()) > 0.0 ? 1.0 : -1.0;
+  cv::Mat on_plane(frame.image.size(), CV_8UC1, cv::Scalar(0));
+  cv::Mat above(frame.image.size(), CV_8UC1, cv::Scalar(0));
+  for (const MapPoint& point : reconstruction.points) {
+    const auto pixel = raw_pixel(camera, pose, point.position);
+    if (!pixel || !camera.contains(*pixel, options.border_px)) continue;
+    const double height = side * height_over(plane, point.position);
+    const double distance = (point.position - pose.translation()).norm();
+    const double thickness = options.thickness_share * distance;
+    const bool lies_on_it =
+        point.plane == plane.id && std::abs(height) <= thickness &&
+        agrees_with_depth(frame.depth, pose, *pixel, point.position, options.depth_tolerance);
+    if (!lies_on_it && height <= thickness) continue;
+    cv::circle(lies_on_it ? on_plane : above,
+               {static_cast<int>(pixel->x()), static_cast<int>(pixel->y())}, 3, cv::Scalar(255),
+               cv::FILLED);
+  }
+  on_plane.setTo(0, above);
+  return on_plane;
+}
+
+/// Textured pixels of one plane in a frame, strongest first, spread out.
 std::vector<AnchoredPoint> candidates(const Reconstruction& reconstruction,
                                       const slam::FrameInput& frame, const cv::Mat& grey,
                                       const slam::Pose& pose, const PlaneRecord& plane,
                                       const TrackOptions& options) {
-  const slam::Camera& camera = reconstruction.camera;
-  cv::Mat near_points(grey.size(), CV_8UC1, cv::Scalar(0));
-  for (const MapPoint& point : reconstruction.points) {
-    const auto pixel =
-        point.plane == plane.id ? raw_pixel(camera, pose, point.position) : std::nullopt;
-    if (!pixel || !camera.contains(*pixel, options.border_px)) continue;
-    // What lies on a desk is not the desk.
-    const double height = plane.normal.dot(point.position) + plane.offset;
-    const double distance = (point.position - pose.translation()).norm();
-    if (std::abs(height) > options.thickness_share * distance) continue;
-    if (!agrees_with_depth(frame.depth, pose, *pixel, point.position, options.depth_tolerance)) {
-      continue;
-    }
-    cv::circle(near_points, {static_cast<int>(pixel->x()), static_cast<int>(pixel->y())}, 3,
-               cv::Scalar(255), cv::FILLED);
-  }
   std::vector<cv::Point2f> corners;
   cv::goodFeaturesToTrack(grey, corners, options.points, options.least_corner,
-                          options.least_distance_px, near_points, 5);
+                          options.least_distance_px,
+                          mask_of_plane(reconstruction, frame, pose, plane, options), 5);
   std::vector<AnchoredPoint> found;
   for (const cv::Point2f& corner : corners) {
     const Eigen::Vector2d pixel(corner.x, corner.y);
-    const auto hit = hit_test(reconstruction.planes, pixel_ray(camera, pose, pixel), {0.0});
+    const auto hit =
+        hit_test(reconstruction.planes, pixel_ray(reconstruction.camera, pose, pixel), {0.0});
     if (hit && hit->plane_id == plane.id) found.push_back({pixel, hit->point});
   }
   return found;
@@ -255,26 +272,32 @@ class FrameComparison {
 
   void add(const slam::FrameInput& frame, const slam::Pose& pose) {
     const PictureSizes pictures = to_pictures(frame.image);
-    look_at_map(pose);
+    seen_.clear();
+    if (frame.depth.empty()) look_at_map(pose);
     const int before = result_.visible;
     for (const AnchoredPoint& point : anchor_.points) add_point(frame, pictures, pose, point);
     result_.frames += result_.visible > before ? 1 : 0;
   }
 
  private:
+  /// Keeps the points that are nearer than the plane behind them: those of the plane itself hide
+  /// none of it, however flat it is seen.
   void look_at_map(const slam::Pose& pose) {
-    seen_.clear();
     const slam::Pose cam_from_world = pose.inverse();
+    const PlaneRecord& plane = *anchor_.plane;
+    const double camera_height = height_over(plane, pose.translation());
     for (const MapPoint& point : map_points_) {
       const auto seen = seen_from(camera_, cam_from_world, point.position);
-      if (seen && camera_.contains(seen->pixel, 0.0)) seen_.push_back(*seen);
+      if (!seen || !camera_.contains(seen->pixel, 0.0)) continue;
+      // On one ray, as the distances to the plane so those to the camera.
+      const double nearer = height_over(plane, point.position) / camera_height;
+      if (nearer > options_.hidden_share) seen_.push_back(*seen);
     }
   }
 
   bool is_hidden(const SeenPoint& drawn) const {
     return std::any_of(seen_.begin(), seen_.end(), [&](const SeenPoint& seen) {
-      return seen.z < (1.0 - options_.hidden_share) * drawn.z &&
-             (seen.pixel - drawn.pixel).norm() < options_.hidden_px;
+      return seen.z < drawn.z && (seen.pixel - drawn.pixel).norm() < options_.hidden_px;
     });
   }
 

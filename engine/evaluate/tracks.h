@@ -25,8 +25,8 @@ struct TrackOptions {
   double max_slant_deg = 78.0;     ///< nor planes seen flatter
   double max_zoom = 2.5;           ///< nor patches that much larger or smaller than at the anchor
   double depth_tolerance = 0.04;   ///< with depth images: nor points this share before or behind
-  double hidden_px = 8.0;          ///< nor points so near to where a map point is seen that is
-  double hidden_share = 0.02;      ///< nearer than they are by this share of the distance
+  double hidden_px = 8.0;          ///< without: nor points so near to where a map point is seen
+  double hidden_share = 0.02;      ///< that is off the plane by this share of the distance
 };
 
 /// How content anchored at one frame keeps to the picture's own texture in the others, without any

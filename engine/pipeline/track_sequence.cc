@@ -117,12 +117,13 @@ class TwoPassTracker {
   void second_pass();
   void take_over_references();
   void localise_run(int begin, int end, int step, int& done);
-  bool localise_frame(int position, const std::optional<slam::Pose>& prior,
+  bool localise_frame(int position, const std::vector<slam::Pose>& priors,
                       const slam::ImageFeatures& image);
   void smooth();
   void mend(std::size_t begin, std::vector<slam::PathPose>& path);
   void record_first(int position, const slam::FrameTrack& track);
   slam::Pose new_from_old_world(int position) const;
+  slam::Pose moved_on(const slam::Pose& cam_from_world, int from, int to) const;
   Reconstruction records();
 
   Sequence& sequence_;
@@ -232,9 +233,9 @@ void TwoPassTracker::take_over_references() {
   }
 }
 
-bool TwoPassTracker::localise_frame(int position, const std::optional<slam::Pose>& prior,
+bool TwoPassTracker::localise_frame(int position, const std::vector<slam::Pose>& priors,
                                     const slam::ImageFeatures& image) {
-  const std::optional<slam::PoseEstimate> estimate = system_.localise(image, prior);
+  const std::optional<slam::PoseEstimate> estimate = system_.localise(image, priors);
   if (!estimate) return false;
   FrameRecord& record = frames_[static_cast<std::size_t>(position)];
   record.world_from_cam = estimate->cam_from_world.inverse();
@@ -248,6 +249,14 @@ bool TwoPassTracker::localise_frame(int position, const std::optional<slam::Pose
   return true;
 }
 
+/// A pose at one frame, carried to another by what the first pass saw of the motion between them.
+slam::Pose TwoPassTracker::moved_on(const slam::Pose& cam_from_world, int from, int to) const {
+  const auto& before = frames_[static_cast<std::size_t>(from)].causal_world_from_cam;
+  const auto& after = frames_[static_cast<std::size_t>(to)].causal_world_from_cam;
+  if (!before || !after) return cam_from_world;
+  return after->inverse() * *before * cam_from_world;
+}
+
 /// Localises the frames begin, begin + step, ... before end; those without a pose of their own
 /// start from the frame before them in this order.
 void TwoPassTracker::localise_run(int begin, int end, int step, int& done) {
@@ -258,13 +267,12 @@ void TwoPassTracker::localise_run(int begin, int end, int step, int& done) {
     FramesAhead::Prepared prepared = ahead.take();
     if (position + step != end) ahead.request(true);
     const FrameRecord& record = frames_[static_cast<std::size_t>(position)];
-    std::optional<slam::Pose> prior = previous;
-    if (record.world_from_cam) prior = record.world_from_cam->inverse();
-    if (prepared.image && localise_frame(position, prior, *prepared.image)) {
-      previous = record.world_from_cam->inverse();
-    } else if (record.world_from_cam) {
-      previous = record.world_from_cam->inverse();
-    }
+    std::vector<slam::Pose> priors;
+    if (record.world_from_cam) priors.push_back(record.world_from_cam->inverse());
+    // What the final adjustment changed between a frame and its reference shows at its neighbour.
+    if (previous) priors.push_back(moved_on(*previous, position - step, position));
+    if (prepared.image) localise_frame(position, priors, *prepared.image);
+    if (record.world_from_cam) previous = record.world_from_cam->inverse();
     if (progress_) progress_(count_ + std::min(++done, count_), total_steps());
   }
 }
@@ -290,7 +298,7 @@ void TwoPassTracker::second_pass() {
     }
     const slam::Pose prior =
         frames_[static_cast<std::size_t>(position + 1)].world_from_cam->inverse();
-    localise_frame(position, prior, system_.prepare(sequence_.read(first_ + position), true));
+    localise_frame(position, {prior}, system_.prepare(sequence_.read(first_ + position), true));
   }
   if (cancel_requested()) {
     stopped_ = kInterrupted;
@@ -313,7 +321,7 @@ void TwoPassTracker::mend(std::size_t begin, std::vector<slam::PathPose>& path) 
     if (trusted[i] != 0) continue;
     const auto position = static_cast<int>(begin + i);
     const slam::FrameInput frame = sequence_.read(first_ + position);
-    if (!localise_frame(position, slam::pose_between(poses, trusted, i),
+    if (!localise_frame(position, {slam::pose_between(poses, trusted, i)},
                         system_.prepare(frame, true))) {
       continue;
     }

@@ -9,6 +9,7 @@ import time
 import numpy as np
 import torch
 import torch.nn.functional as F
+from torch.optim.swa_utils import AveragedModel
 
 from plane_network import FINE, WIDTH, PlaneNetwork, fine_maps
 from plane_shards import INSTANCES, make_batch, open_shard
@@ -126,6 +127,8 @@ def main():
     parser.add_argument("--width", type=int, default=WIDTH, help="of the pictures, 192 or 128")
     parser.add_argument("--decay", type=float, default=0.5,
                         help="share of the steps over which the rate falls to nothing")
+    parser.add_argument("--average", type=float, default=0.0,
+                        help="what is kept is a running mean of the weights; share of the past a step")
     parser.add_argument("--float32", action="store_true", help="where bfloat16 is not faster")
     parser.add_argument("--rate", type=float, default=3e-3)
     parser.add_argument("--seed", type=int, default=1)
@@ -138,6 +141,10 @@ def main():
     if options.start:
         network.load_state_dict(torch.load(options.start))
     network.train()
+    kept = network
+    if options.average > 0:
+        kept = AveragedModel(network, use_buffers=True, avg_fn=lambda mean, value, _: torch.lerp(
+            value.float(), mean.float(), options.average).to(mean.dtype))
     optimizer = torch.optim.AdamW(network.parameters(), lr=options.rate, weight_decay=1e-4)
     warm = 200
     falling = max(1, int(options.decay * options.steps))
@@ -160,6 +167,8 @@ def main():
         torch.nn.utils.clip_grad_norm_(network.parameters(), 5.0)
         optimizer.step()
         schedule.step()
+        if kept is not network:
+            kept.update_parameters(network)
         for k, v in values.items():
             sums[k] = sums.get(k, 0.0) + float(v)
         if step % 100 == 0:
@@ -167,9 +176,10 @@ def main():
             print(f"{step} {time.time() - started:.0f}s cpu {time.process_time():.0f}s {text}", flush=True)
             sums = {}
         if step % 500 == 0 or step == options.steps:
-            torch.save(network.state_dict(), options.output + ".part")
+            result = network if kept is network else kept.module
+            torch.save(result.state_dict(), options.output + ".part")
             os.replace(options.output + ".part", options.output)
-            text = " ".join(f"{k} {v:.4f}" for k, v in validate(network, options.validation).items())
+            text = " ".join(f"{k} {v:.4f}" for k, v in validate(result, options.validation).items())
             print(f"{step} validation {text}", flush=True)
 
 

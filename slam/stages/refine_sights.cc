@@ -1,8 +1,11 @@
 #include "slam/stages/refine_sights.h"
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace planecast::slam {
@@ -16,40 +19,121 @@ Eigen::Vector3d mean_centre(const Map& map, const Landmark& landmark) {
   return sum / static_cast<double>(landmark.observations.size());
 }
 
-}  // namespace
+/// New positions of keypoints, kept aside so that what is aligned in one round has the same
+/// references whatever the order.
+class MovedKeypoints {
+ public:
+  explicit MovedKeypoints(const Map& map)
+      : features_(static_cast<std::size_t>(map.keyframes.next_id())) {}
 
-RefineSightsResult refine_sights(Map& map, const Camera& camera, const PatchMatchOptions& options) {
-  RefineSightsResult result;
-  // What was there before is the reference for all, so that the order does not matter.
-  std::vector<std::shared_ptr<Features>> changed(static_cast<std::size_t>(map.keyframes.next_id()));
+  void move(const Keyframe& keyframe, int keypoint, const PatchMatch& match) {
+    std::shared_ptr<Features>& features = features_[static_cast<std::size_t>(keyframe.id)];
+    if (features == nullptr) features = std::make_shared<Features>(*keyframe.features);
+    Keypoint& moved = features->keypoints[static_cast<std::size_t>(keypoint)];
+    moved.raw = match.raw;
+    moved.pixel = match.pixel.cast<float>();
+  }
+
+  void apply(const Camera& camera, Map& map) {
+    for (KeyframeId id = 0; id < map.keyframes.next_id(); ++id) {
+      std::shared_ptr<Features>& features = features_[static_cast<std::size_t>(id)];
+      if (features == nullptr) continue;
+      features->build_grid(camera.width, camera.height);
+      map.keyframes.at(id).features = std::exchange(features, nullptr);
+    }
+  }
+
+ private:
+  std::vector<std::shared_ptr<Features>> features_;  ///< by keyframe; null: unchanged
+};
+
+/// A sight to align, and the one that it is to look like.
+struct SightPair {
+  LandmarkId landmark = kNone;
+  Observation seen;
+  Observation reference;
+};
+
+/// Aligns the sights with their references. Returns those that do not look like them.
+std::vector<SightPair> align(const std::vector<SightPair>& pairs, const Camera& camera,
+                             const PatchMatchOptions& options, Map& map) {
+  std::vector<SightPair> unlike;
+  MovedKeypoints moved(map);
+  for (const SightPair& pair : pairs) {
+    const Keyframe& keyframe = map.keyframes.at(pair.seen.keyframe);
+    const auto k = static_cast<std::size_t>(pair.seen.keypoint);
+    const std::optional<PatchMatch> match = match_patch(
+        map, camera, *keyframe.pyramid, keyframe.cam_from_world, map.landmarks.at(pair.landmark),
+        pair.reference, keyframe.features->keypoints[k].raw, options);
+    if (match) {
+      moved.move(keyframe, pair.seen.keypoint, *match);
+    } else {
+      unlike.push_back(pair);
+    }
+  }
+  moved.apply(camera, map);
+  return unlike;
+}
+
+/// Every sight of a landmark but the one in the middle, with that.
+std::vector<SightPair> pair_with_middle(const Map& map) {
+  std::vector<SightPair> pairs;
   for (const Landmark& landmark : map.landmarks) {
     if (landmark.observations.size() < 2) continue;
     const Observation* reference = nearest_observation(map, landmark, mean_centre(map, landmark));
     if (reference == nullptr) continue;
     for (const Observation& seen : landmark.observations) {
-      const Keyframe& keyframe = map.keyframes.at(seen.keyframe);
-      if (seen.keyframe == reference->keyframe || keyframe.pyramid == nullptr) continue;
-      const auto k = static_cast<std::size_t>(seen.keypoint);
-      const std::optional<PatchMatch> match =
-          match_patch(map, camera, *keyframe.pyramid, keyframe.cam_from_world, landmark, *reference,
-                      keyframe.features->keypoints[k].raw, options);
-      if (!match) {
-        ++result.kept;
-        continue;
-      }
-      std::shared_ptr<Features>& features = changed[static_cast<std::size_t>(keyframe.id)];
-      if (features == nullptr) features = std::make_shared<Features>(*keyframe.features);
-      features->keypoints[k].raw = match->raw;
-      features->keypoints[k].pixel = match->pixel.cast<float>();
-      ++result.refined;
+      if (seen.keyframe == reference->keyframe) continue;
+      if (map.keyframes.at(seen.keyframe).pyramid == nullptr) continue;
+      pairs.push_back({landmark.id, seen, *reference});
     }
   }
-  for (KeyframeId id = 0; id < map.keyframes.next_id(); ++id) {
-    std::shared_ptr<Features>& features = changed[static_cast<std::size_t>(id)];
-    if (features == nullptr) continue;
-    features->build_grid(camera.width, camera.height);
-    map.keyframes.at(id).features = std::move(features);
+  return pairs;
+}
+
+/// The sights (by landmark) once more, each with the nearest one of its landmark that is not among
+/// them.
+std::vector<SightPair> pair_with_nearest(const Map& map, const std::vector<SightPair>& unlike) {
+  std::vector<SightPair> pairs;
+  for (auto begin = unlike.begin(); begin != unlike.end();) {
+    const auto end = std::find_if(
+        begin, unlike.end(), [&](const SightPair& p) { return p.landmark != begin->landmark; });
+    const auto is_unlike = [&](const Observation& seen) {
+      return std::any_of(begin, end,
+                         [&](const SightPair& p) { return p.seen.keyframe == seen.keyframe; });
+    };
+    for (auto pair = begin; pair != end; ++pair) {
+      const Eigen::Vector3d centre = map.keyframes.at(pair->seen.keyframe).centre_world();
+      double least = std::numeric_limits<double>::max();
+      SightPair next = *pair;
+      for (const Observation& seen : map.landmarks.at(pair->landmark).observations) {
+        const Keyframe& keyframe = map.keyframes.at(seen.keyframe);
+        if (keyframe.pyramid == nullptr || is_unlike(seen)) continue;
+        const double distance = (keyframe.centre_world() - centre).squaredNorm();
+        if (distance >= least) continue;
+        least = distance;
+        next.reference = seen;
+      }
+      pairs.push_back(next);
+    }
+    begin = end;
   }
+  return pairs;
+}
+
+}  // namespace
+
+RefineSightsResult refine_sights(Map& map, const Camera& camera, const PatchMatchOptions& options) {
+  RefineSightsResult result;
+  const std::vector<SightPair> pairs = pair_with_middle(map);
+  std::vector<SightPair> unlike = align(pairs, camera, options, map);
+  unlike = align(pair_with_nearest(map, unlike), camera, options, map);
+  for (const SightPair& pair : unlike) {
+    if (!map.landmarks.contains(pair.landmark)) continue;
+    map.remove_observation(pair.landmark, pair.seen.keyframe);
+  }
+  result.removed = static_cast<int>(unlike.size());
+  result.refined = static_cast<int>(pairs.size()) - result.removed;
   return result;
 }
 

@@ -82,6 +82,18 @@ TEST(Tracks, LeaveOutWhatTheMapStandsBefore) {
   EXPECT_GT(hidden.visible, 0);
 }
 
+TEST(Tracks, APlaneDoesNotHideItself) {
+  Reconstruction world = world_with_points();
+  const TablePrint print = blots();
+  PictureSequence sequence = film_table(world, print);
+  // So coarse that nearer points of the table lie within the radius.
+  TrackOptions options;
+  options.hidden_px = 60.0;
+  const TracksResult with_points = evaluate_tracks(world, sequence, options);
+  options.hidden_px = 0.0;
+  EXPECT_EQ(with_points.visible, evaluate_tracks(world, sequence, options).visible);
+}
+
 TEST(Tracks, SaysWhatIsMissing) {
   Reconstruction world = world_with_points();
   const TablePrint print = blots();
