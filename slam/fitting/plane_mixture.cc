@@ -65,6 +65,15 @@ bool refit(const PlanePoints& points, const std::vector<int>& indices,
   return true;
 }
 
+/// The other shares grow by what `behind` may not have.
+void hold_behind(double most, PlaneMixture& mixture) {
+  if (mixture.behind <= most) return;
+  const double factor = (1.0 - most) / (mixture.share + mixture.before);
+  mixture.share *= factor;
+  mixture.before *= factor;
+  mixture.behind = most;
+}
+
 double log_likelihood_of(const PlanePoints& points, const std::vector<int>& indices,
                          const PlaneMixture& mixture, double reach) {
   /// Of the points within reach, that either side is taken to have at least.
@@ -99,6 +108,7 @@ std::optional<PlaneMixture> fit_plane_mixture(const PlanePoints& points,
     mixture.share = expected.on / expected.within;
     mixture.before = expected.before / expected.within;
     mixture.behind = expected.behind / expected.within;
+    hold_behind(options.max_behind, mixture);
   }
   mixture.log_likelihood = log_likelihood_of(points, indices, mixture, options.reach);
   return mixture;

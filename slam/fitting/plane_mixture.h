@@ -11,6 +11,8 @@ struct PlaneMixtureOptions {
   double reach = 0.0;      ///< distance over band up to which points are looked at
   double min_sigma = 0.0;  ///< the sheet's deviation is not told finer than this
   double max_sigma = 0.0;  ///< where the search starts: a sheet is no thicker
+  /// Of `behind`: how much of what is within reach may be seen through the plane. 1 asks nothing.
+  double max_behind = 1.0;
   int iterations = 12;
 };
 

@@ -143,6 +143,7 @@ void PlaneMapper::finish(Map& map, PlaneMappingStats& stats) {
   } else {
     search_again(map, stats);
   }
+  settle_planes(map, context_of(map));
   finished_ = false;
 }
 

@@ -1,10 +1,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <numeric>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "slam/geometry/random.h"
+#include "slam/stages/plane_plausibility.h"
 #include "slam/stages/plane_steps.h"
 
 namespace planecast::slam {
@@ -25,6 +29,10 @@ constexpr double kBetter = 1.001;
 constexpr double kKept = 0.75;
 /// Distance, in bands, beyond which support is let go.
 constexpr double kFarBands = 1.5;
+/// [D] Share of what is near a plane that may be seen through it, by mistake.
+constexpr double kMostBehind = 0.02;
+/// [D] seen_through_share() of a monocular slab.
+constexpr double kMostSeenThrough = 0.11;
 /// Landmarks of a plane in a keyframe for it to count as seen there.
 constexpr int kSeenLandmarks = 3;
 
@@ -121,6 +129,54 @@ PlanePoints with_surroundings(const Map& map, const PlanePoints& support,
   return points;
 }
 
+/// Starts for settle(): the present plane, and of those through random triples that are near it the
+/// ones with most points close by.
+std::vector<PlaneEquation> settling_starts(const PlanePoints& points, std::vector<int> pool,
+                                           const PlaneEquation& present, double sigma, double reach,
+                                           Random& random) {
+  constexpr int kTriples = 400;
+  constexpr std::size_t kKept = 6;
+  static const double kLeastCosine = std::cos(15.0 * std::numbers::pi / 180.0);
+  std::erase_if(pool, [&](int i) {
+    return std::abs(present.signed_distance(points.positions[static_cast<std::size_t>(i)])) > reach;
+  });
+  std::vector<PlaneEquation> starts = {present};
+  if (pool.size() < 2 * kFewest) return starts;
+  std::vector<std::pair<double, PlaneEquation>> rivals;
+  for (int k = 0; k < kTriples; ++k) {
+    for (std::size_t i = 0; i < kFewest; ++i) {
+      std::swap(pool[i], pool[i + random.below(static_cast<int>(pool.size() - i))]);
+    }
+    const auto fit = fit_plane(points.positions, {pool.begin(), pool.begin() + kFewest}, {});
+    if (!fit) continue;
+    const PlaneEquation rival = facing(fit->plane, present.normal);
+    if (rival.normal.dot(present.normal) < kLeastCosine) continue;
+    rivals.emplace_back(score_of(rival, points, pool, sigma), rival);
+  }
+  std::stable_sort(rivals.begin(), rivals.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  for (std::size_t i = 0; i < std::min(kKept, rivals.size()); ++i) {
+    starts.push_back(rivals[i].second);
+  }
+  return starts;
+}
+
+bool settle(const PlanePoints& points, Plane& plane, const PlaneContext& context,
+            std::uint64_t seed) {
+  const std::vector<int> pool = evenly(points.size());
+  Random random(seed);
+  PlaneMixtureOptions options = mixture_options(context.scale);
+  options.max_sigma = options.min_sigma;
+  options.max_behind = kMostBehind;
+  const PlaneEquation present{plane.normal, plane.offset};
+  const auto best = fit_plane_mixture(
+      points, pool,
+      settling_starts(points, pool, present, options.max_sigma, options.reach, random), options);
+  if (!best) return false;
+  plane.refit(best->plane.normal, best->plane.offset);
+  return true;
+}
+
 bool reestimate(const Map& map, Plane& plane, const PlaneSupport& support,
                 const PlaneContext& context, std::uint64_t seed) {
   const bool alone = plane.label > 0;  // what its mask left out is not on it
@@ -145,16 +201,14 @@ bool reestimate(const Map& map, Plane& plane, const PlaneSupport& support,
   return true;
 }
 
-/// Lets go what the new equation does not explain: landmarks in view are left to the next culling,
-/// those out of view would stay for ever.
-void release_far_support(Map& map, Plane& plane, const PlaneSupport& support,
-                         const PlaneContext& context) {
+/// Lets go what the new equation does not explain, farther than `most` over band: landmarks in view
+/// are left to the next culling, those out of view would stay for ever.
+void release_far_support(Map& map, Plane& plane, const PlaneSupport& support, double most) {
   const std::size_t landmarks = support.landmarks.size();
-  const double eps = own_eps({plane.normal, plane.offset}, support.points, context.scale);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < support.points.positions.size(); ++i) {
     const double distance = std::abs(plane.signed_distance(support.points.positions[i]));
-    const bool far = distance > kFarBands * support.points.band[i] * eps;
+    const bool far = distance > most * support.points.band[i];
     if (i < landmarks) {
       if (far) map.landmarks.at(support.landmarks[i]).plane = kNone;
     } else if (!far) {
@@ -225,7 +279,33 @@ int reestimate_planes(Map& map, KeyframeId keyframe, const PlaneContext& context
     const std::uint64_t task = static_cast<std::uint64_t>(keyframe) * 4096 + plane.id;
     changed +=
         reestimate(map, plane, support[plane.id], context, mix_seed(context.options.seed, task));
-    release_far_support(map, plane, support[plane.id], context);
+    const double eps =
+        own_eps({plane.normal, plane.offset}, support[plane.id].points, context.scale);
+    release_far_support(map, plane, support[plane.id], kFarBands * eps);
+  }
+  return changed;
+}
+
+int settle_planes(Map& map, const PlaneContext& context) {
+  const std::vector<PlaneSupport> support = gather_support(map, context);
+  const double eps = eps_of_sigma(0.0, context.scale);
+  int changed = 0;
+  std::vector<char> slab(support.size(), 0);
+  for (Plane& plane : map.planes) {
+    const PlanePoints points = with_surroundings(map, support[plane.id].points, context);
+    const std::uint64_t task = static_cast<std::uint64_t>(plane.id);
+    changed += settle(points, plane, context, mix_seed(context.options.seed, task));
+    const double through =
+        seen_through_share({plane.normal, plane.offset}, points, eps, context.scale);
+    slab[plane.id] = !context.rgbd && through > kMostSeenThrough;
+  }
+  // What only lies on a plane would bend it in the joint refinement.
+  for (Plane& plane : map.planes) release_far_support(map, plane, support[plane.id], eps);
+  const std::vector<PlaneSupport> settled = gather_support(map, context);
+  for (Plane& plane : map.planes) {
+    const bool was_weak = plane.weak;
+    update_figures(plane, settled[plane.id], context);
+    plane.weak = plane.weak || was_weak || slab[plane.id] != 0;
   }
   return changed;
 }

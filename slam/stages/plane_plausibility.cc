@@ -137,6 +137,38 @@ bool is_faced(const KeyframePoints& shown, const PlaneCandidate& candidate, cons
          (!thick || facing >= options.min_facing_of_thick * inliers);
 }
 
+double seen_through_share(const PlaneEquation& plane, const PlanePoints& points, double eps,
+                          const PlaneScale& scale) {
+  constexpr double kDeepest = 4.0;          // bands
+  constexpr double kLeastCosine = 0.2;      // flatter rays cross the plane somewhere else
+  constexpr int kAbout = 2;                 // points on the plane that the ray passes between...
+  const double nearby = 2.0 * scale.eps_d;  // ...within so much
+  const auto distance_of = [&](int i) {
+    return plane.signed_distance(points.positions[static_cast<std::size_t>(i)]) /
+           points.band[static_cast<std::size_t>(i)];
+  };
+  std::vector<Eigen::Vector3d> on_plane;
+  for (int i = 0; i < points.size(); ++i) {
+    if (std::abs(distance_of(i)) < eps)
+      on_plane.push_back(points.positions[static_cast<std::size_t>(i)]);
+  }
+  if (on_plane.empty()) return 0.0;
+  int through = 0;
+  for (int i = 0; i < points.size(); ++i) {
+    const double distance = distance_of(i);
+    const Eigen::Vector3d& ray = points.view_from[static_cast<std::size_t>(i)];
+    const double cosine = ray.dot(plane.normal);
+    if (distance > -eps || distance < -kDeepest * eps || cosine < kLeastCosine) continue;
+    const Eigen::Vector3d& point = points.positions[static_cast<std::size_t>(i)];
+    const Eigen::Vector3d crossing = point - plane.signed_distance(point) / cosine * ray;
+    const auto about =
+        std::count_if(on_plane.begin(), on_plane.end(),
+                      [&](const Eigen::Vector3d& p) { return (p - crossing).norm() < nearby; });
+    through += about >= kAbout;
+  }
+  return static_cast<double>(through) / static_cast<double>(on_plane.size());
+}
+
 bool is_broad(const KeyframePoints& shown, const PlaneCandidate& candidate,
               const PlausibilityOptions& options) {
   double view = 0.0;

@@ -55,6 +55,13 @@ bool is_faced(const KeyframePoints& shown, const PlaneCandidate& candidate, cons
 bool is_broad(const KeyframePoints& shown, const PlaneCandidate& candidate,
               const PlausibilityOptions& options);
 
+/// How many of the points are seen through the plane over how many are on it: those behind it, by
+/// one to four times `eps` over band, whose mean viewing ray crosses it between two that are on it.
+/// An opaque plane has strays there alone; a slab cut out of clutter has what it was cut from. 0
+/// where none is on it.
+double seen_through_share(const PlaneEquation& plane, const PlanePoints& points, double eps,
+                          const PlaneScale& scale);
+
 /// Density of points in the band over that beside it, over the same patch; infinite where nothing
 /// is beside. Beside it count the points that no plane owns or one that is nearly parallel, so that
 /// no second layer is laid over a noisy plane; of an image with masks those of the same instance

@@ -66,6 +66,11 @@ struct RefineCounts {
 /// that sees it.
 RefineCounts project_landmarks(Map& map, KeyframeId keyframe, const PlaneContext& context);
 
+/// [D] Refits every plane of a finished map to what is most alike in it: the likeliest sheet of the
+/// least thickness, with next to nothing behind it, by the landmarks about it. Returns the number
+/// of planes changed.
+int settle_planes(Map& map, const PlaneContext& context);
+
 /// Refits every plane to its support after the map has moved; depth points follow their keyframes.
 void refit_planes(Map& map, const PlaneContext& context);
 
