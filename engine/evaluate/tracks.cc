@@ -325,7 +325,9 @@ class FrameComparison {
     if (!found) return;
     const auto back = find_patch(pictures, *found, anchor_.pictures, at_anchor,
                                  derivative->cast<float>(), options_);
-    if (!back || (*back - at_anchor).norm() > options_.max_return_px) return;
+    // In pixels of the coarser of the two pictures.
+    const double coarser = std::min(1.0, zoom);
+    if (!back || coarser * (*back - at_anchor).norm() > options_.max_return_px) return;
     ++result_.compared;
     errors_.push_back((found->cast<double>() - drawn->pixel).norm());
   }

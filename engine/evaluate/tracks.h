@@ -19,7 +19,7 @@ struct TrackOptions {
   double thickness_share = 0.003;  ///< of the distance: landmarks nearer to the plane lie on it
   double least_corner = 0.02;      ///< cornerness, of the strongest candidate's
   double min_correlation = 0.8;    ///< of a patch found again
-  double max_return_px = 0.5;      ///< from the anchor, of the patch sent back to its frame
+  double max_return_px = 0.5;      ///< from the anchor, of the patch sent back; see evaluate_tracks
   double max_shift_px = 12.0;      ///< from its projection, in which a patch is looked for
   double border_px = 12.0;         ///< points nearer to the picture's edge do not count as visible
   double max_slant_deg = 78.0;     ///< nor planes seen flatter
@@ -45,10 +45,11 @@ struct TracksResult {
 /// Anchors textured points of a plane by hit test at one frame (by default, of the first ten in
 /// equal steps the one with most candidates) and compares where each is projected in every other
 /// frame with where its texture is found there: its patch, warped by the plane, is aligned to
-/// sub-pixels near the projection and back from there to the first frame. A point that something
-/// of the map stands before does not count as visible. Pixels are raw ones.
-/// Candidates lie where the map has points of that plane, so that they are on it and not before it.
-/// Throws UserError for frames and planes that are not there and when no point is found.
+/// sub-pixels near the projection and back from there to the first frame, where it must end near
+/// the anchor, in pixels of the picture that shows it smaller. A point that something of the map
+/// stands before does not count as visible. Pixels are raw ones. Candidates lie where the map has
+/// points of that plane, so that they are on it and not before it. Throws UserError for frames and
+/// planes that are not there and when no point is found.
 TracksResult evaluate_tracks(const Reconstruction& reconstruction, Sequence& sequence,
                              const TrackOptions& options = {});
 
