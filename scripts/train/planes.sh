@@ -32,18 +32,20 @@ train() {
   $python scripts/train/train_planes.py --shards "$work/train_*.bin" \
     --validation "$work/validation.bin" --batch 8 "$@" | tee -a "$log"
 }
-# Pictures 128 wide first; then the whole size, at last with the rate falling to nothing.
+# Pictures 128 wide first; then the whole size, with the rate falling to nothing, at last from a mean of
+# the weights.
 train --output "$work/1.pt" --shards "$work/train_0*.bin" --width 128 --steps 4000 --decay 0 --seed 1
 train --output "$work/2.pt" --start "$work/1.pt" --steps 8000 --decay 0 --seed 3
 train --output "$work/3.pt" --start "$work/2.pt" --steps 7000 --decay 1 --seed 5
 train --output "$work/4.pt" --start "$work/3.pt" --steps 5000 --decay 1 --rate 2e-3 --seed 7
-$python scripts/train/export_planes.py "$work/4.pt" assets/network/planes.onnx
+train --output "$work/5.pt" --start "$work/4.pt" --steps 24000 --decay 1 --rate 2e-3 --average 0.999 --seed 9
+$python scripts/train/export_planes.py "$work/5.pt" assets/network/planes.onnx
 grep -E '^(seed |[0-9]*[05]00 )' "$log" >assets/network/training.txt
 
 {
   echo "Plane network, made by scripts/train/planes.sh; log in training.txt"
   echo "training: $((shards * rooms_per_shard)) rooms (seeds from 0), $views views each, 192x144"
-  echo "steps of 8 pictures: 4000 at 128x96, then 8000, 7000 and 5000 (falling rate) at 192x144"
+  echo "steps of 8 pictures: 4000 at 128x96, then 8000, 7000, 5000 and 24000 (falling rate) at 192x144"
   for rooms in 20 500; do
     $tools/evaluate_planes assets/network/planes.onnx held-out $rooms | tail -1
   done

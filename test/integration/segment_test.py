@@ -31,7 +31,7 @@ class Masks(unittest.TestCase):
         out = WORK / "network"
         done = planecast("segment", TABLETOP, "--segmentation", "network", "--overlay", "--frames",
                          "0:4", "-o", out, "--no-progress")
-        self.assertIn("plane masks: network planes 2 ", done.stderr)
+        self.assertIn("plane masks: network planes 3 ", done.stderr)
         masks = (out / "mask.txt").read_text(encoding="utf-8").splitlines()
         self.assertEqual(len([line for line in masks if not line.startswith("#")]), 4)
         self.assertEqual(len(list((out / "mask").glob("*.png"))), 4)
@@ -63,7 +63,7 @@ class Choice(unittest.TestCase):
     def test_tracking_records_what_gave_the_masks(self):
         kinds = {
             "auto": ("masks 1", []),
-            "network": ("network planes 2 ", []),
+            "network": ("network planes 3 ", []),
             "none": ("none", []),
             "depth": ("depth ", ["--mode", "rgbd"]),
         }
