@@ -41,7 +41,20 @@ std::vector<std::pair<Eigen::Vector2d, double>> voting_pixels() {
   return pixels;
 }
 
-std::map<int, Votes> collect_votes(const Reconstruction& reconstruction, int sampled_frames) {
+/// The whole picture, finely: for maps whose planes are small or at the side.
+std::vector<std::pair<Eigen::Vector2d, double>> all_pixels() {
+  std::vector<std::pair<Eigen::Vector2d, double>> pixels;
+  constexpr int kSteps = 32;
+  for (int y = 1; y < kSteps; ++y) {
+    for (int x = 1; x < kSteps; ++x) {
+      pixels.emplace_back(Eigen::Vector2d(x, y) / kSteps, 1.0);
+    }
+  }
+  return pixels;
+}
+
+std::map<int, Votes> collect_votes(const Reconstruction& reconstruction, int sampled_frames,
+                                   const std::vector<std::pair<Eigen::Vector2d, double>>& pixels) {
   std::vector<const FrameRecord*> posed;
   for (const FrameRecord& frame : reconstruction.frames) {
     if (frame.world_from_cam) posed.push_back(&frame);
@@ -50,7 +63,6 @@ std::map<int, Votes> collect_votes(const Reconstruction& reconstruction, int sam
   const std::size_t step =
       std::max<std::size_t>(1, posed.size() / static_cast<std::size_t>(sampled_frames));
   const slam::Camera& camera = reconstruction.camera;
-  const auto pixels = voting_pixels();
   for (std::size_t i = 0; i < posed.size(); i += step) {
     for (const auto& [fraction, weight] : pixels) {
       const Eigen::Vector2d pixel(fraction.x() * (camera.width - 1),
@@ -130,7 +142,9 @@ DefaultSceneOptions builtin_models() {
 }
 
 SceneFile default_scene(const Reconstruction& reconstruction, const DefaultSceneOptions& options) {
-  const std::map<int, Votes> votes = collect_votes(reconstruction, options.sampled_frames);
+  std::map<int, Votes> votes =
+      collect_votes(reconstruction, options.sampled_frames, voting_pixels());
+  if (votes.empty()) votes = collect_votes(reconstruction, options.sampled_frames, all_pixels());
   if (votes.empty()) {
     throw UserError(
         "no scene given, and the map has no plane in view to put an object on (planes: " +

@@ -31,7 +31,7 @@ constexpr double kKept = 0.75;
 constexpr double kFarBands = 1.5;
 /// [D] Share of what is near a plane that may be seen through it, by mistake.
 constexpr double kMostBehind = 0.02;
-/// [D] seen_through_share() of a monocular slab.
+/// [D] Points that are seen through a plane, over those on it.
 constexpr double kMostSeenThrough = 0.11;
 /// Landmarks of a plane in a keyframe for it to count as seen there.
 constexpr int kSeenLandmarks = 3;
@@ -177,6 +177,13 @@ bool settle(const PlanePoints& points, Plane& plane, const PlaneContext& context
   return true;
 }
 
+/// Whether more is seen through a plane than strays, by more than chance.
+bool is_slab(const Plane& plane, const PlanePoints& points, double eps, const PlaneScale& scale) {
+  const SeenThrough seen = count_seen_through({plane.normal, plane.offset}, points, eps, scale);
+  const double strays = kMostSeenThrough * seen.on_plane;
+  return seen.through > strays + std::sqrt(strays);
+}
+
 bool reestimate(const Map& map, Plane& plane, const PlaneSupport& support,
                 const PlaneContext& context, std::uint64_t seed) {
   const bool alone = plane.label > 0;  // what its mask left out is not on it
@@ -295,9 +302,7 @@ int settle_planes(Map& map, const PlaneContext& context) {
     const PlanePoints points = with_surroundings(map, support[plane.id].points, context);
     const std::uint64_t task = static_cast<std::uint64_t>(plane.id);
     changed += settle(points, plane, context, mix_seed(context.options.seed, task));
-    const double through =
-        seen_through_share({plane.normal, plane.offset}, points, eps, context.scale);
-    slab[plane.id] = !context.rgbd && through > kMostSeenThrough;
+    slab[plane.id] = !context.rgbd && is_slab(plane, points, eps, context.scale);
   }
   // What only lies on a plane would bend it in the joint refinement.
   for (Plane& plane : map.planes) release_far_support(map, plane, support[plane.id], eps);

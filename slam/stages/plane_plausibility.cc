@@ -137,8 +137,8 @@ bool is_faced(const KeyframePoints& shown, const PlaneCandidate& candidate, cons
          (!thick || facing >= options.min_facing_of_thick * inliers);
 }
 
-double seen_through_share(const PlaneEquation& plane, const PlanePoints& points, double eps,
-                          const PlaneScale& scale) {
+SeenThrough count_seen_through(const PlaneEquation& plane, const PlanePoints& points, double eps,
+                               const PlaneScale& scale) {
   constexpr double kDeepest = 4.0;          // bands
   constexpr double kLeastCosine = 0.2;      // flatter rays cross the plane somewhere else
   constexpr int kAbout = 2;                 // points on the plane that the ray passes between...
@@ -152,8 +152,7 @@ double seen_through_share(const PlaneEquation& plane, const PlanePoints& points,
     if (std::abs(distance_of(i)) < eps)
       on_plane.push_back(points.positions[static_cast<std::size_t>(i)]);
   }
-  if (on_plane.empty()) return 0.0;
-  int through = 0;
+  SeenThrough result{static_cast<int>(on_plane.size()), 0};
   for (int i = 0; i < points.size(); ++i) {
     const double distance = distance_of(i);
     const Eigen::Vector3d& ray = points.view_from[static_cast<std::size_t>(i)];
@@ -164,9 +163,9 @@ double seen_through_share(const PlaneEquation& plane, const PlanePoints& points,
     const auto about =
         std::count_if(on_plane.begin(), on_plane.end(),
                       [&](const Eigen::Vector3d& p) { return (p - crossing).norm() < nearby; });
-    through += about >= kAbout;
+    result.through += about >= kAbout;
   }
-  return static_cast<double>(through) / static_cast<double>(on_plane.size());
+  return result;
 }
 
 bool is_broad(const KeyframePoints& shown, const PlaneCandidate& candidate,

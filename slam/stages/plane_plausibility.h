@@ -55,12 +55,15 @@ bool is_faced(const KeyframePoints& shown, const PlaneCandidate& candidate, cons
 bool is_broad(const KeyframePoints& shown, const PlaneCandidate& candidate,
               const PlausibilityOptions& options);
 
-/// How many of the points are seen through the plane over how many are on it: those behind it, by
-/// one to four times `eps` over band, whose mean viewing ray crosses it between two that are on it.
-/// An opaque plane has strays there alone; a slab cut out of clutter has what it was cut from. 0
-/// where none is on it.
-double seen_through_share(const PlaneEquation& plane, const PlanePoints& points, double eps,
-                          const PlaneScale& scale);
+/// Points on a plane and those that are seen through it: behind it, by one to four times `eps` over
+/// band, where their mean viewing ray crosses it between two that are on it. An opaque plane has
+/// strays there alone; a slab cut out of clutter has what it was cut from.
+struct SeenThrough {
+  int on_plane = 0;
+  int through = 0;
+};
+SeenThrough count_seen_through(const PlaneEquation& plane, const PlanePoints& points, double eps,
+                               const PlaneScale& scale);
 
 /// Density of points in the band over that beside it, over the same patch; infinite where nothing
 /// is beside. Beside it count the points that no plane owns or one that is nearly parallel, so that

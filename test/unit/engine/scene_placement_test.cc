@@ -297,5 +297,14 @@ TEST(DefaultScene, TakesAWallWhenThereIsNothingElse) {
   EXPECT_THROW(default_scene(world, options), UserError);
 }
 
+TEST(DefaultScene, TakesASmallPlaneAtTheSideWhenTheMiddleShowsNone) {
+  Reconstruction world = table_world();
+  world.planes = {make_plane(7, level_ring(0.5, 0.8, 0.9, 1.3, 1.6), -Eigen::Vector3d::UnitY(),
+                             Eigen::Vector3d::UnitX())};
+  world.planes[0].plane_class = "horizontal";
+  const SceneFile scene = default_scene(world, DefaultSceneOptions());
+  EXPECT_EQ(std::get<PlanePlace>(scene.objects[0].place).plane, "7");
+}
+
 }  // namespace
 }  // namespace planecast::engine
