@@ -16,10 +16,10 @@ from plane_shards import make_batch, open_shard
 
 def set_normalisation(module, inputs):
     """Statistics of what comes in, and the scale and shift that undo them; then the folded bias."""
-    deviations, means = torch.var_mean(inputs[0], (0, 2, 3), unbiased=False)
+    variances, means = torch.var_mean(inputs[0], (0, 2, 3), unbiased=False)
     module.running_mean.copy_(means)
-    module.running_var.copy_(deviations)
-    module.weight.copy_((deviations + module.eps).sqrt())
+    module.running_var.copy_(variances)
+    module.weight.copy_((variances + module.eps).sqrt())
     module.bias.add_(means)
 
 

@@ -161,6 +161,8 @@ std::vector<PlaneEquation> settling_starts(const PlanePoints& points, std::vecto
   return starts;
 }
 
+/// Refits the plane to the likeliest thin sheet in its points. False, and nothing changed, where
+/// there is none.
 bool settle(const PlanePoints& points, Plane& plane, const PlaneContext& context,
             std::uint64_t seed) {
   const std::vector<int> pool = evenly(points.size());
