@@ -27,10 +27,13 @@ double class_weight(const PlaneRecord& plane) {
   return plane.plane_class == "ceiling" ? 0.05 : 0.25;
 }
 
+/// Fractions of the picture, and what each counts.
+using WeightedPixels = std::vector<std::pair<Eigen::Vector2d, double>>;
+
 /// Fractions of the picture whose rays vote; the middle counts most, and content stands better a
 /// little below it, where its upper end stays in view.
-std::vector<std::pair<Eigen::Vector2d, double>> voting_pixels() {
-  std::vector<std::pair<Eigen::Vector2d, double>> pixels;
+WeightedPixels voting_pixels() {
+  WeightedPixels pixels;
   for (double y = 0.3; y < 0.86; y += 0.11) {
     for (double x = 0.2; x < 0.81; x += 0.12) {
       const double dx = (x - 0.5) / 0.25;
@@ -42,8 +45,8 @@ std::vector<std::pair<Eigen::Vector2d, double>> voting_pixels() {
 }
 
 /// The whole picture, finely: for maps whose planes are small or at the side.
-std::vector<std::pair<Eigen::Vector2d, double>> all_pixels() {
-  std::vector<std::pair<Eigen::Vector2d, double>> pixels;
+WeightedPixels all_pixels() {
+  WeightedPixels pixels;
   constexpr int kSteps = 32;
   for (int y = 1; y < kSteps; ++y) {
     for (int x = 1; x < kSteps; ++x) {
@@ -54,7 +57,7 @@ std::vector<std::pair<Eigen::Vector2d, double>> all_pixels() {
 }
 
 std::map<int, Votes> collect_votes(const Reconstruction& reconstruction, int sampled_frames,
-                                   const std::vector<std::pair<Eigen::Vector2d, double>>& pixels) {
+                                   const WeightedPixels& pixels) {
   std::vector<const FrameRecord*> posed;
   for (const FrameRecord& frame : reconstruction.frames) {
     if (frame.world_from_cam) posed.push_back(&frame);

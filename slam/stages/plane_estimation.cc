@@ -31,8 +31,8 @@ constexpr double kKept = 0.75;
 constexpr double kFarBands = 1.5;
 /// [D] Share of what is near a plane that may be seen through it, by mistake.
 constexpr double kMostBehind = 0.02;
-/// [D] Points that are seen through a plane, over those on it.
-constexpr double kMostSeenThrough = 0.11;
+/// [D] Points that are seen through a plane by mistake, over those on it.
+constexpr double kSeenThrough = 0.06;
 /// Landmarks of a plane in a keyframe for it to count as seen there.
 constexpr int kSeenLandmarks = 3;
 
@@ -65,12 +65,19 @@ Eigen::Vector3d mean_view(const PlanePoints& points) {
   return sum;
 }
 
-/// An even choice of at most kMostPoints of n.
-std::vector<int> evenly(int n) {
-  const int step = (n + kMostPoints - 1) / kMostPoints;
+/// An even choice of at most `most` of n.
+std::vector<int> evenly(int n, int most = kMostPoints) {
+  const int step = (n + most - 1) / most;
   std::vector<int> result;
   for (int i = 0; i < n; i += std::max(step, 1)) result.push_back(i);
   return result;
+}
+
+/// Brings `count` random points of the pool to its front.
+void draw(std::size_t count, std::vector<int>& pool, Random& random) {
+  for (std::size_t i = 0; i < count; ++i) {
+    std::swap(pool[i], pool[i + random.below(static_cast<int>(pool.size() - i))]);
+  }
 }
 
 /// The best, for the tightest inlier distance, of fits to random subsets of the pool: to 60 % of it
@@ -87,9 +94,7 @@ std::optional<PlaneEquation> best_of_subsets(const PlanePoints& points, std::vec
   double best_score = 0.0;
   for (int k = 0; k < 2 * kSubsets; ++k) {
     const std::size_t size = k % 2 == 0 ? large : static_cast<std::size_t>(kFewest);
-    for (std::size_t i = 0; i < size; ++i) {
-      std::swap(pool[i], pool[i + random.below(static_cast<int>(pool.size() - i))]);
-    }
+    draw(size, pool, random);
     const std::vector<int> subset(pool.begin(), pool.begin() + static_cast<std::ptrdiff_t>(size));
     const auto fit = fit_plane(points.positions, subset, weights);
     if (!fit) continue;
@@ -102,13 +107,14 @@ std::optional<PlaneEquation> best_of_subsets(const PlanePoints& points, std::vec
   return best;
 }
 
-/// Adds to the plane's support, thinned, the landmarks that no plane owns about it [D]: judged by
-/// its own support alone a tilted plane would confirm itself, for what it misses is not in there.
+/// Adds to the plane's support, thinned to `most`, the landmarks that no plane owns about it [D]:
+/// judged by its own support alone a tilted plane would confirm itself, for what it misses is not
+/// in there.
 PlanePoints with_surroundings(const Map& map, const PlanePoints& support,
-                              const PlaneContext& context) {
+                              const PlaneContext& context, int most = kMostPoints) {
   PlanePoints points;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  for (const int i : evenly(support.size())) {
+  for (const int i : evenly(support.size(), most)) {
     points.positions.push_back(support.positions[i]);
     points.view_from.push_back(support.view_from[i]);
     points.band.push_back(support.band[i]);
@@ -144,9 +150,7 @@ std::vector<PlaneEquation> settling_starts(const PlanePoints& points, std::vecto
   if (pool.size() < 2 * kFewest) return starts;
   std::vector<std::pair<double, PlaneEquation>> rivals;
   for (int k = 0; k < kTriples; ++k) {
-    for (std::size_t i = 0; i < kFewest; ++i) {
-      std::swap(pool[i], pool[i + random.below(static_cast<int>(pool.size() - i))]);
-    }
+    draw(kFewest, pool, random);
     const auto fit = fit_plane(points.positions, {pool.begin(), pool.begin() + kFewest}, {});
     if (!fit) continue;
     const PlaneEquation rival = facing(fit->plane, present.normal);
@@ -179,11 +183,11 @@ bool settle(const PlanePoints& points, Plane& plane, const PlaneContext& context
   return true;
 }
 
-/// Whether more is seen through a plane than strays, by more than chance.
+/// Whether more is seen through a plane than strays, by two standard deviations of their number.
 bool is_slab(const Plane& plane, const PlanePoints& points, double eps, const PlaneScale& scale) {
   const SeenThrough seen = count_seen_through({plane.normal, plane.offset}, points, eps, scale);
-  const double strays = kMostSeenThrough * seen.on_plane;
-  return seen.through > strays + std::sqrt(strays);
+  const double strays = kSeenThrough * seen.on_plane;
+  return seen.through > strays + 2.0 * std::sqrt(strays);
 }
 
 bool reestimate(const Map& map, Plane& plane, const PlaneSupport& support,
@@ -301,10 +305,14 @@ int settle_planes(Map& map, const PlaneContext& context) {
   int changed = 0;
   std::vector<char> slab(support.size(), 0);
   for (Plane& plane : map.planes) {
-    const PlanePoints points = with_surroundings(map, support[plane.id].points, context);
+    const PlanePoints& own = support[plane.id].points;
     const std::uint64_t task = static_cast<std::uint64_t>(plane.id);
-    changed += settle(points, plane, context, mix_seed(context.options.seed, task));
-    slab[plane.id] = !context.rgbd && is_slab(plane, points, eps, context.scale);
+    changed += settle(with_surroundings(map, own, context), plane, context,
+                      mix_seed(context.options.seed, task));
+    if (context.rgbd) continue;
+    // Counted against each other, nothing may be thinned.
+    const PlanePoints all = with_surroundings(map, own, context, std::max(own.size(), 1));
+    slab[plane.id] = is_slab(plane, all, eps, context.scale);
   }
   // What only lies on a plane would bend it in the joint refinement.
   for (Plane& plane : map.planes) release_far_support(map, plane, support[plane.id], eps);

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -98,25 +97,16 @@ std::vector<SightPair> pair_with_nearest(const Map& map, const std::vector<Sight
   for (auto begin = unlike.begin(); begin != unlike.end();) {
     const auto end = std::find_if(
         begin, unlike.end(), [&](const SightPair& p) { return p.landmark != begin->landmark; });
-    const auto is_unlike = [&](const Observation& seen) {
+    Landmark alike = map.landmarks.at(begin->landmark);
+    std::erase_if(alike.observations, [&](const Observation& seen) {
       return std::any_of(begin, end,
                          [&](const SightPair& p) { return p.seen.keyframe == seen.keyframe; });
-    };
-    for (auto pair = begin; pair != end; ++pair) {
-      const Eigen::Vector3d centre = map.keyframes.at(pair->seen.keyframe).centre_world();
-      double least = std::numeric_limits<double>::max();
-      SightPair next = *pair;
-      for (const Observation& seen : map.landmarks.at(pair->landmark).observations) {
-        const Keyframe& keyframe = map.keyframes.at(seen.keyframe);
-        if (keyframe.pyramid == nullptr || is_unlike(seen)) continue;
-        const double distance = (keyframe.centre_world() - centre).squaredNorm();
-        if (distance >= least) continue;
-        least = distance;
-        next.reference = seen;
-      }
-      pairs.push_back(next);
+    });
+    for (; begin != end; ++begin) {
+      const Eigen::Vector3d centre = map.keyframes.at(begin->seen.keyframe).centre_world();
+      // There is one at least, what they were aligned with before.
+      pairs.push_back({alike.id, begin->seen, *nearest_observation(map, alike, centre)});
     }
-    begin = end;
   }
   return pairs;
 }

@@ -33,10 +33,15 @@ Reconstruction world_with_points() {
   return world;
 }
 
-TEST(Tracks, TruePosesKeepToTheTexture) {
-  const Reconstruction world = world_with_points();
+/// The sequence shows what was filmed; `world` may be changed.
+struct Tracks : testing::Test {
+  const Reconstruction filmed = world_with_points();
   const TablePrint print = blots();
-  PictureSequence sequence = film_table(world, print);
+  PictureSequence sequence = film_table(filmed, print);
+  Reconstruction world = filmed;
+};
+
+TEST_F(Tracks, TruePosesKeepToTheTexture) {
   const TracksResult result = evaluate_tracks(world, sequence);
   EXPECT_EQ(result.plane_id, 1);
   EXPECT_EQ(result.points, 30);
@@ -45,11 +50,7 @@ TEST(Tracks, TruePosesKeepToTheTexture) {
   EXPECT_LT(result.error_px.rms, 0.1);  // what alignment of patches can do on such pictures
 }
 
-TEST(Tracks, MeasureWhatIsWrong) {
-  Reconstruction world = world_with_points();
-  const Reconstruction truth = world;
-  const TablePrint print = blots();
-  PictureSequence sequence = film_table(truth, print);
+TEST_F(Tracks, MeasureWhatIsWrong) {
   TrackOptions options;
   options.frame = 0;
   // Turned by a milliradian from frame 1 on: 0.5 px at a focal length of 500.
@@ -62,10 +63,7 @@ TEST(Tracks, MeasureWhatIsWrong) {
   EXPECT_GT(result.compared_share(), 0.9);
 }
 
-TEST(Tracks, LeaveOutWhatTheMapStandsBefore) {
-  Reconstruction world = world_with_points();
-  const TablePrint print = blots();
-  PictureSequence sequence = film_table(world, print);
+TEST_F(Tracks, LeaveOutWhatTheMapStandsBefore) {
   const TracksResult open = evaluate_tracks(world, sequence);
   // Half of the table's points get one of another plane a third of the way to the first camera.
   const Eigen::Vector3d centre = world.frames.front().world_from_cam->translation();
@@ -82,10 +80,7 @@ TEST(Tracks, LeaveOutWhatTheMapStandsBefore) {
   EXPECT_GT(hidden.visible, 0);
 }
 
-TEST(Tracks, APlaneDoesNotHideItself) {
-  Reconstruction world = world_with_points();
-  const TablePrint print = blots();
-  PictureSequence sequence = film_table(world, print);
+TEST_F(Tracks, APlaneDoesNotHideItself) {
   // So coarse that nearer points of the table lie within the radius.
   TrackOptions options;
   options.hidden_px = 60.0;
@@ -94,10 +89,7 @@ TEST(Tracks, APlaneDoesNotHideItself) {
   EXPECT_EQ(with_points.visible, evaluate_tracks(world, sequence, options).visible);
 }
 
-TEST(Tracks, SaysWhatIsMissing) {
-  Reconstruction world = world_with_points();
-  const TablePrint print = blots();
-  PictureSequence sequence = film_table(world, print);
+TEST_F(Tracks, SaysWhatIsMissing) {
   TrackOptions options;
   options.frame = 99;
   EXPECT_THROW(evaluate_tracks(world, sequence, options), UserError);
