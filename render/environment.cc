@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <future>
 #include <numbers>
 #include <stdexcept>
+#include <vector>
 
 namespace planecast::render {
 namespace {
@@ -49,23 +51,42 @@ FacePlace place_on_cube(const glm::vec3& d) {
   return d.z > 0.0F ? FacePlace{4, d.x / a.z, -d.y / a.z} : FacePlace{5, -d.x / a.z, -d.y / a.z};
 }
 
-/// Calls visit(index, direction, share of the sphere) for each texel of a cube; shares sum to about
-/// 1.
+/// Calls visit(index, direction, share of the sphere) for each texel of a cube's face; shares of
+/// all six sum to about 1.
 template <typename Visit>
-void for_each_texel(int side, const Visit& visit) {
-  std::size_t index = 0;
+void for_each_texel_of_face(int face, int side, const Visit& visit) {
+  std::size_t index = static_cast<std::size_t>(face) * static_cast<std::size_t>(side * side);
   const float texel = 2.0F / static_cast<float>(side);
-  for (int face = 0; face < kFaces; ++face) {
-    for (int y = 0; y < side; ++y) {
-      for (int x = 0; x < side; ++x, ++index) {
-        const glm::vec3 d = face_direction(face, (static_cast<float>(x) + 0.5F) * texel - 1.0F,
-                                           (static_cast<float>(y) + 0.5F) * texel - 1.0F);
-        const float length2 = glm::dot(d, d);
-        const float share = texel * texel / (length2 * std::sqrt(length2) * 4.0F * kPi);
-        visit(index, d / std::sqrt(length2), share);
-      }
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x, ++index) {
+      const glm::vec3 d = face_direction(face, (static_cast<float>(x) + 0.5F) * texel - 1.0F,
+                                         (static_cast<float>(y) + 0.5F) * texel - 1.0F);
+      const float length2 = glm::dot(d, d);
+      const float share = texel * texel / (length2 * std::sqrt(length2) * 4.0F * kPi);
+      visit(index, d / std::sqrt(length2), share);
     }
   }
+}
+
+template <typename Visit>
+void for_each_texel(int side, const Visit& visit) {
+  for (int face = 0; face < kFaces; ++face) for_each_texel_of_face(face, side, visit);
+}
+
+/// The same with the faces shared out to threads.
+template <typename Visit>
+void for_each_texel(int side, int threads, const Visit& visit) {
+  std::vector<std::future<void>> others;
+  const int workers = std::clamp(threads, 1, kFaces);
+  const auto work = [&](int worker) {
+    for (int face = worker; face < kFaces; face += workers) {
+      for_each_texel_of_face(face, side, visit);
+    }
+  };
+  for (int worker = 1; worker < workers; ++worker) {
+    others.push_back(std::async(std::launch::async, work, worker));
+  }
+  work(0);
 }
 
 glm::vec3 texel_at(const std::vector<glm::vec3>& cube, int side, const FacePlace& place) {
@@ -218,21 +239,23 @@ Environment::Environment(const ImageF& map, const EnvironmentOptions& options) :
     const auto lobe = lobe_of(roughness, options_.samples, options_.side, levels);
     const auto n = static_cast<std::size_t>(side(level));
     std::vector<glm::vec3>& cube = cubes_.emplace_back(kFaces * n * n);
-    for_each_texel(side(level), [&](std::size_t index, const glm::vec3& normal, float) {
-      const glm::vec3 helper = std::abs(normal.y) < 0.9F ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
-      const glm::vec3 a = glm::normalize(glm::cross(helper, normal));
-      const glm::vec3 b = glm::cross(normal, a);
-      glm::vec3 sum(0.0F);
-      float weight = 0.0F;
-      for (const LobeSample& sample : lobe) {
-        const glm::vec3 l =
-            sample.to_light.x * a + sample.to_light.y * b + sample.to_light.z * normal;
-        sum += sample.weight * blended_at(pyramid_[static_cast<std::size_t>(sample.level)],
-                                          side(sample.level), place_on_cube(l));
-        weight += sample.weight;
-      }
-      cube[index] = sum / weight;
-    });
+    for_each_texel(
+        side(level), options_.threads, [&](std::size_t index, const glm::vec3& normal, float) {
+          const glm::vec3 helper =
+              std::abs(normal.y) < 0.9F ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
+          const glm::vec3 a = glm::normalize(glm::cross(helper, normal));
+          const glm::vec3 b = glm::cross(normal, a);
+          glm::vec3 sum(0.0F);
+          float weight = 0.0F;
+          for (const LobeSample& sample : lobe) {
+            const glm::vec3 l =
+                sample.to_light.x * a + sample.to_light.y * b + sample.to_light.z * normal;
+            sum += sample.weight * blended_at(pyramid_[static_cast<std::size_t>(sample.level)],
+                                              side(sample.level), place_on_cube(l));
+            weight += sample.weight;
+          }
+          cube[index] = sum / weight;
+        });
   }
 }
 

@@ -12,6 +12,7 @@ struct EnvironmentOptions {
   int side = 128;     ///< texels of a cube face at roughness 0; a power of two
   int samples = 128;  ///< directions a texel of the blurred levels is the mean of
   int smallest = 4;   ///< side at roughness 1
+  int threads = 1;    ///< that compute it; changes no result
 };
 
 /// Surroundings infinitely far away, as a cube of radiance for each of several roughnesses: the

@@ -9,8 +9,9 @@
 namespace planecast::engine {
 namespace {
 
-/// x264's bytes depend on its number of threads.
-constexpr int kEncoderThreads = 1;
+/// x264's bytes depend on its number of threads, so that it is the same for every --threads. More
+/// than two would help no machine on which the frames are also drawn.
+constexpr int kEncoderThreads = 2;
 /// Lines from which video is taken to be in the HD colour space, as players guess for untagged
 /// files.
 constexpr int kHdLines = 720;

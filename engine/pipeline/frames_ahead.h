@@ -1,41 +1,55 @@
 #pragma once
 
-#include <future>
+#include <exception>
 #include <optional>
 #include <string>
+#include <thread>
 
+#include "engine/pipeline/ordered_queue.h"
 #include "engine/pipeline/picture_flow.h"
 #include "slam/system.h"
 
 namespace planecast::engine {
 
-/// Reads frames some ahead and prepares them one ahead of the one in use, on threads of their own
-/// where allowed. Whether the map was initialised is known two frames late, always, so that threads
-/// change nothing.
+/// Reads frames some ahead and prepares those that were requested, in order, on threads of their
+/// own where allowed. What preparing depends on comes with the request, so that threads change
+/// nothing.
 class FramesAhead {
  public:
   /// For the frames begin, begin + step, ... before end. `sequence` and `system` outlive this.
   FramesAhead(Sequence& sequence, const slam::System& system, int begin, int end, bool threaded,
-              int step)
-      : reader_(sequence, begin, end, threaded, step), system_(system), threaded_(threaded) {}
+              int step);
+  ~FramesAhead();
+  FramesAhead(const FramesAhead&) = delete;
+  FramesAhead& operator=(const FramesAhead&) = delete;
+
+  /// As many may be requested and not yet taken.
+  static constexpr int kMost = 4;
 
   struct Prepared {
     std::optional<slam::ImageFeatures> image;  ///< nothing: unreadable
     std::string error;
   };
 
-  /// Starts on the next frame; there must be one.
+  /// Asks for the next frame; there must be one.
   void request(bool initialised);
-  /// The frame requested last; waits for it.
-  Prepared take() { return next_.get(); }
+  /// The oldest frame that was requested; waits for it. Throws what preparing it threw.
+  Prepared take();
 
  private:
-  Prepared prepare(bool initialised);
+  struct Outcome {
+    Prepared prepared;
+    std::exception_ptr failure;
+  };
+
+  Outcome prepare(bool initialised);
+  void prepare_all();
 
   FrameReader reader_;
   const slam::System& system_;
-  bool threaded_;
-  std::future<Prepared> next_;
+  OrderedQueue<bool> requests_;  ///< whether the map is initialised
+  OrderedQueue<Outcome> outcomes_;
+  std::thread thread_;  ///< none: take() prepares
 };
 
 }  // namespace planecast::engine

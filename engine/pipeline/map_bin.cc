@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <opencv2/core/utility.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <string_view>
@@ -75,12 +76,25 @@ void take_about(ByteReader& in, Reconstruction& reconstruction) {
 }
 
 void put_pictures(const slam::Map& map, ByteWriter& out) {
+  std::vector<const slam::Keyframe*> shown;
   for (const slam::Keyframe& keyframe : map.keyframes) {
     if (keyframe.pyramid == nullptr || keyframe.pyramid->levels.empty()) continue;
-    std::vector<unsigned char> png;
-    cv::imencode(".png", keyframe.pyramid->levels.front(), png, {cv::IMWRITE_PNG_COMPRESSION, 1});
-    out.put(static_cast<std::int32_t>(keyframe.id));
-    out.put(std::string_view(reinterpret_cast<const char*>(png.data()), png.size()));
+    shown.push_back(&keyframe);
+  }
+  std::vector<std::vector<unsigned char>> pngs(shown.size());
+  // Photographs repeat nothing: Huffman's code alone is smaller than the quickest search for
+  // repetitions, in three quarters of its time.
+  const std::vector<int> settings = {cv::IMWRITE_PNG_COMPRESSION, 1, cv::IMWRITE_PNG_STRATEGY,
+                                     cv::IMWRITE_PNG_STRATEGY_HUFFMAN_ONLY};
+  cv::parallel_for_(cv::Range(0, static_cast<int>(shown.size())), [&](const cv::Range& range) {
+    for (int i = range.start; i < range.end; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      cv::imencode(".png", shown[k]->pyramid->levels.front(), pngs[k], settings);
+    }
+  });
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    out.put(static_cast<std::int32_t>(shown[k]->id));
+    out.put(std::string_view(reinterpret_cast<const char*>(pngs[k].data()), pngs[k].size()));
   }
 }
 

@@ -1,5 +1,6 @@
 #include "engine/pipeline/picture_flow.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "engine/user_error.h"
@@ -7,7 +8,17 @@
 namespace planecast::engine {
 namespace {
 
-constexpr std::size_t kQueueLength = 4;  ///< frames: enough to hide jitter, little memory
+constexpr std::size_t kQueueLength = 4;  ///< pictures: enough to hide jitter, little memory
+constexpr std::size_t kMostReadAhead = 16;
+
+/// Frames to read ahead: as many as fit 16 MB of colour, so that small ones are read while tracking
+/// waits for the map.
+std::size_t frames_read_ahead(const slam::Camera& camera) {
+  constexpr std::size_t kBytes = 16U << 20U;
+  const std::size_t frame = 3 * static_cast<std::size_t>(std::max(camera.width, 1)) *
+                            static_cast<std::size_t>(std::max(camera.height, 1));
+  return std::clamp(kBytes / frame, kQueueLength, kMostReadAhead);
+}
 
 ReadFrame read_frame(Sequence& sequence, int index) {
   ReadFrame result;
@@ -23,7 +34,11 @@ ReadFrame read_frame(Sequence& sequence, int index) {
 }  // namespace
 
 FrameReader::FrameReader(Sequence& sequence, int begin, int end, bool threaded, int step)
-    : sequence_(sequence), next_(begin), end_(end), step_(step), queue_(kQueueLength) {
+    : sequence_(sequence),
+      next_(begin),
+      end_(end),
+      step_(step),
+      queue_(frames_read_ahead(sequence.camera())) {
   if (threaded) thread_ = std::thread([this] { read_all(); });
 }
 

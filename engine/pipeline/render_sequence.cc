@@ -76,6 +76,7 @@ class SequenceRenderer {
   LightTrackOptions light_options() const {
     LightTrackOptions result;
     result.causal = options_.causal;
+    result.threads = options_.threads;
     result.follow_exposure = scene_.look.exposure;
     result.reflections = std::ranges::any_of(content_.items, [](const ContentItem& item) {
       return item.model != nullptr && render::is_polished(*item.model);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
+#include <utility>
 
 #include "engine/look/exposure.h"
 #include "engine/look/surroundings.h"
@@ -72,13 +74,23 @@ LightTrack::LightTrack(Sequence& sequence, const Reconstruction& reconstruction,
   const auto frames = sampled_frames(sequence, reconstruction, options);
   const std::size_t view_step =
       std::max<std::size_t>(1, frames.size() / static_cast<std::size_t>(options.most_views));
+  std::future<cv::Mat> next;
+  const auto read_ahead = [&](std::size_t i) {
+    if (i == frames.size()) return;
+    next = std::async(options.threads > 1 ? std::launch::async : std::launch::deferred,
+                      [&sequence, index = frames[i]->index] { return sequence.read(index).image; });
+  };
+  read_ahead(0);
   for (std::size_t i = 0; i < frames.size(); ++i) {
+    std::future<cv::Mat> read = std::move(next);
+    read.wait();
+    read_ahead(i + 1);
     const FrameRecord& frame = *frames[i];
     const slam::Pose& pose = options.causal ? *frame.causal_world_from_cam : *frame.world_from_cam;
     Sample sample;
     sample.frame_index = frame.index;
     try {
-      const cv::Mat image = sequence.read(frame.index).image;
+      const cv::Mat image = read.get();
       if (options.follow_exposure) sample.gain = exposure_gain(reconstruction, image, pose);
       if (!fixed && i % view_step == 0) estimator.add(image, reconstruction.camera, pose);
       if (reflections) surroundings.add(image, reconstruction.camera, pose, sample.gain);
@@ -96,7 +108,10 @@ LightTrack::LightTrack(Sequence& sequence, const Reconstruction& reconstruction,
     const SceneLight light = estimator.estimate(reconstruction.up);
     for (Sample& sample : samples_) sample.light = light;
     if (reflections && surroundings.seen() > 0.0) {
-      environment_ = std::make_shared<render::Environment>(surroundings.panorama(light));
+      render::EnvironmentOptions environment_options;
+      environment_options.threads = options.threads;
+      environment_ =
+          std::make_shared<render::Environment>(surroundings.panorama(light), environment_options);
     }
   }
   if (options.causal) {

@@ -25,6 +25,7 @@ struct LightTrackOptions {
   int most_views = 24;          ///< samples that the surroundings are estimated from
   double smooth_samples = 1.0;  ///< standard deviation of the exposure's smoothing
   double causal_share = 0.5;    ///< of a new sample in the causal filter
+  int threads = 1;              ///< changes no result
 };
 
 /// The light over the frames of a sequence: the surroundings and the main direction as all pictures

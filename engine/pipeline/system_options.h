@@ -9,7 +9,8 @@
 
 namespace planecast::engine {
 
-/// Whether depth is used, by options.mode; throws UserError where there is none, and for other words.
+/// Whether depth is used, by options.mode; throws UserError where there is none, and for other
+/// words.
 bool use_depth(const Sequence& sequence, const TrackSequenceOptions& options);
 
 /// Throws UserError for words that are no option, and for a broken vocabulary.

@@ -132,6 +132,7 @@ slam::Pose TwoPassTracker::new_from_old_world(int position) const {
 
 void TwoPassTracker::first_pass() {
   FramesAhead ahead(sequence_, system_, first_, first_ + count_, options_.threads > 1, 1);
+  // Whether the map was initialised is known two frames late, always.
   ahead.request(system_.initialised());
   for (int position = 0; position < count_; ++position) {
     if (cancel_requested()) return stop_before(position, kInterrupted);
@@ -210,11 +211,17 @@ slam::Pose TwoPassTracker::moved_on(const slam::Pose& cam_from_world, int from, 
 /// start from the frame before them in this order.
 void TwoPassTracker::localise_run(int begin, int end, int step, int& done) {
   FramesAhead ahead(sequence_, system_, first_ + begin, first_ + end, options_.threads > 1, step);
-  if (begin != end) ahead.request(true);
+  int requested = begin;
+  for (int i = 0; i < FramesAhead::kMost && requested != end; ++i, requested += step) {
+    ahead.request(true);
+  }
   std::optional<slam::Pose> previous;
   for (int position = begin; position != end && !cancel_requested(); position += step) {
     FramesAhead::Prepared prepared = ahead.take();
-    if (position + step != end) ahead.request(true);
+    if (requested != end) {
+      ahead.request(true);
+      requested += step;
+    }
     const FrameRecord& record = frames_[static_cast<std::size_t>(position)];
     std::vector<slam::Pose> priors;
     if (record.world_from_cam) priors.push_back(record.world_from_cam->inverse());
