@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "slam/segmentation/depth_normal.h"
 #include "slam/segmentation/plane_segmenter.h"
@@ -10,8 +12,9 @@ namespace planecast::slam {
 
 namespace {
 
-/// [D] Depth samples per image row: enough for a plane of a hundredth of the image to have 8.
-constexpr int kSamplesPerRow = 32;
+/// [D] Depth samples per image row: enough for a plane of a hundredth of the image to have 17, and
+/// for the normals about them to be known where a surface is ten rows high.
+constexpr int kSamplesPerRow = 48;
 
 int sample_step(const Keyframe& keyframe) {
   return std::max(1, keyframe.depth.cols / kSamplesPerRow);
@@ -97,12 +100,55 @@ void append_depth_sample(const Keyframe& keyframe, const PlaneContext& context, 
   append(point, context, out);
 }
 
+/// Distance of the samples in each mask: that of all others, or less where the mask is so small or
+/// narrow that few would fall into it.
+class MaskSteps {
+ public:
+  MaskSteps(const cv::Mat& labels, int step) : step_(step) {
+    constexpr double kLeastSamples = 24.0;
+    std::vector<int> looks;
+    for (int y = 0; y < labels.rows; y += kFinest) {
+      const auto* row = labels.ptr<std::uint16_t>(y);
+      for (int x = 0; x < labels.cols; x += kFinest) {
+        if (row[x] >= looks.size()) looks.resize(row[x] + 1U, 0);
+        ++looks[row[x]];
+      }
+    }
+    for (const int count : looks) {
+      const auto fitting = static_cast<int>(std::sqrt(count / kLeastSamples));
+      steps_.push_back(std::min(std::max(fitting, 1) * kFinest, step));
+    }
+    if (!steps_.empty()) steps_.front() = step;
+  }
+
+  bool is_finer(int label) const {
+    return static_cast<std::size_t>(label) < steps_.size() && at(label) < step_;
+  }
+  int at(int label) const { return steps_[static_cast<std::size_t>(label)]; }
+
+  static constexpr int kFinest = 2;
+
+ private:
+  int step_;
+  std::vector<int> steps_;  ///< by label; finer ones are multiples of kFinest
+};
+
 void append_depth_samples(const Keyframe& keyframe, const PlaneContext& context,
                           KeyframePoints& out) {
   if (!context.rgbd || keyframe.depth.empty()) return;
   const int step = sample_step(keyframe);
+  const cv::Mat& labels = keyframe.label_image;
+  const MaskSteps steps(labels, step);
   for (int y = step / 2; y < keyframe.depth.rows; y += step) {
     for (int x = step / 2; x < keyframe.depth.cols; x += step) {
+      if (!labels.empty() && steps.is_finer(labels.at<std::uint16_t>(y, x))) continue;
+      append_depth_sample(keyframe, context, x, y, out);
+    }
+  }
+  for (int y = 0; y < labels.rows; y += MaskSteps::kFinest) {
+    for (int x = 0; x < labels.cols; x += MaskSteps::kFinest) {
+      const int label = labels.at<std::uint16_t>(y, x);
+      if (!steps.is_finer(label) || x % steps.at(label) != 0 || y % steps.at(label) != 0) continue;
       append_depth_sample(keyframe, context, x, y, out);
     }
   }

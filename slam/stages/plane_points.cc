@@ -16,8 +16,9 @@ constexpr double kMaxBand = 2.5;
 /// Of own_eps: the least, in eps_d, and its standard deviations.
 constexpr double kTightest = 0.35;
 constexpr double kSigmas = 3.0;
-/// Of strong_inliers, where no mask speaks for a plane.
+/// Of strong_inliers, where no mask speaks for a plane; with samples of the depth among them.
 constexpr double kUnmasked = 2.0;
+constexpr double kUnmaskedDepth = 3.0;
 
 }  // namespace
 
@@ -101,7 +102,7 @@ int strong_support(const Plane& plane, const PlaneContext& context) {
   constexpr double kUnmaskedAtLast = 0.8;
   double factor = 1.0;
   if (plane.label == 0) {
-    factor = context.finished ? kUnmaskedAtLast : kUnmasked;
+    factor = context.finished ? kUnmaskedAtLast : context.rgbd ? kUnmaskedDepth : kUnmasked;
   } else if (plane.observers.size() >= kManyObservers) {
     factor = kConfirmed;
   }

@@ -155,6 +155,100 @@ TEST(GlobalBundle, FollowsThePreciseMajority) {
   EXPECT_LT(worst_rotation_deg(scene), 0.5 * worst_rotation_deg(compared));
 }
 
+/// A map in which every third landmark is a poor one: what is taken for it is half a pixel to one
+/// side or the other in every keyframe, which no gate tells.
+MapScene map_with_poor_landmarks(Random& random) {
+  MapOptions options;
+  options.noise_px = 0.1;
+  options.keyframes = 10;
+  MapScene scene = make_box_map(options, random);
+  for (Keyframe& keyframe : scene.map.keyframes) {
+    auto features = std::make_shared<Features>(*keyframe.features);
+    for (std::size_t k = 0; k < features->keypoints.size(); ++k) {
+      if (keyframe.landmarks[k] % 3 != 0) continue;
+      Eigen::Vector2f& pixel = features->keypoints[k].pixel;
+      pixel = noisy(pixel.cast<double>(), 0.5, random).cast<float>();
+    }
+    keyframe.features = features;
+  }
+  return scene;
+}
+
+TEST(WeighLandmarks, TellsThoseWhoseSightsAgree) {
+  Random random(seed_of("WeighLandmarks.TellsThoseWhoseSightsAgree"));
+  const MapScene scene = map_with_poor_landmarks(random);
+  BundleOptions bundle;
+  bundle.levels.factor = 1.2;
+  BundleProblem problem = collect_whole_map(scene.map, scene.camera, bundle);
+  const std::vector<double> chi2_before = [&] {
+    std::vector<double> result;
+    for (const BundleObservation& seen : problem.observations) result.push_back(problem.chi2(seen));
+    return result;
+  }();
+  weigh_landmarks(problem);
+  double poor = 0.0;
+  double good = 0.0;
+  int poor_count = 0;
+  int good_count = 0;
+  for (const BundleObservation& seen : problem.observations) {
+    const bool is_poor = problem.landmarks[static_cast<std::size_t>(seen.point)] % 3 == 0;
+    (is_poor ? poor : good) += seen.weight;
+    ++(is_poor ? poor_count : good_count);
+  }
+  EXPECT_GT(good / good_count, 0.8);
+  EXPECT_LT(good / good_count, 1.3);
+  EXPECT_LT(poor / poor_count, 0.4);
+  // Of the landmark, not of one sight; and weighing once more changes nothing.
+  const std::vector<BundleObservation> once = problem.observations;
+  weigh_landmarks(problem);
+  for (std::size_t i = 0; i < once.size(); ++i) {
+    if (i > 0 && once[i].point == once[i - 1].point) {
+      EXPECT_EQ(once[i].weight, once[i - 1].weight);
+    }
+    EXPECT_NEAR(problem.observations[i].weight, once[i].weight, 1e-9);
+    EXPECT_NEAR(problem.chi2(problem.observations[i]),
+                chi2_before[i] * once[i].weight * once[i].weight, 1e-9 * (1.0 + chi2_before[i]));
+  }
+}
+
+TEST(WeighLandmarks, LeavesTheTestOfASightAsItWas) {
+  Random random(seed_of("WeighLandmarks.LeavesTheTestOfASightAsItWas"));
+  MapOptions options;
+  options.noise_px = 1.0;
+  options.outlier_share = 0.05;
+  const MapScene scene = make_box_map(options, random);
+  BundleProblem plain = collect_whole_map(scene.map, scene.camera, {});
+  BundleProblem weighed = plain;
+  weigh_landmarks(weighed);
+  EXPECT_EQ(deactivate_outliers(plain), deactivate_outliers(weighed));
+  for (std::size_t i = 0; i < plain.observations.size(); ++i) {
+    EXPECT_EQ(plain.observations[i].active, weighed.observations[i].active);
+  }
+}
+
+TEST(GlobalBundle, FollowsTheLandmarksWhoseSightsAgree) {
+  Random random(seed_of("GlobalBundle.FollowsTheLandmarksWhoseSightsAgree"));
+  double weighed_error = 0.0;
+  double plain_error = 0.0;
+  for (int map = 0; map < 10; ++map) {
+    MapScene scene = map_with_poor_landmarks(random);
+    BundleProblem plain = collect_whole_map(scene.map, scene.camera, {});
+    BundleSolve cauchy;
+    cauchy.iterations = 30;
+    cauchy.loss = RobustLoss::kCauchy;
+    cauchy.spread = measure_spread(plain);
+    solve_bundle(plain, cauchy);
+    MapScene compared = scene;
+    write_back(plain, compared.map);
+    BundleOptions bundle;
+    bundle.iterations = 20;
+    global_bundle(scene.map, scene.camera, bundle);
+    weighed_error += worst_centre(scene, scale_to_truth(scene));
+    plain_error += worst_centre(compared, scale_to_truth(compared));
+  }
+  EXPECT_LT(weighed_error, 0.9 * plain_error);
+}
+
 TEST(MeasureSpread, TellsHowPreciseMostSightsAre) {
   Random random(seed_of("MeasureSpread.TellsHowPreciseMostSightsAre"));
   MapOptions options;
