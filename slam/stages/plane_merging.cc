@@ -171,18 +171,28 @@ PlaneSupport joined(const PlaneSupport& a, const PlaneSupport& b) {
   return result;
 }
 
+/// Of a plane's support about a plane that it shares with another. [D] With depth eps_Pi is several
+/// times what surfaces are known to, and a table and a cabinet's top that is 4 cm higher would
+/// share one.
+double most_rms(const Plane& own, const PlaneContext& context) {
+  constexpr double kMostGrown = 2.0;
+  constexpr double kAlways = 0.2;
+  if (!context.rgbd) return context.scale.eps_pi;
+  return std::clamp(kMostGrown * own.rms, kAlways * context.scale.eps_pi, context.scale.eps_pi);
+}
+
 /// Whether one plane explains either support as well as planes must. [D] The smaller one would be
 /// lost in the RMS of both; and a plane that was first seen from afar is tilted, so that the
 /// distances of the centroids alone say little about parts that lie side by side.
-bool fits_jointly(const Plane& a, const PlaneSupport& support_a, const PlaneSupport& support_b,
-                  const PlaneContext& context) {
+bool fits_jointly(const Plane& a, const Plane& b, const PlaneSupport& support_a,
+                  const PlaneSupport& support_b, const PlaneContext& context) {
   Plane trial = a;
   if (!refit_robustly(trial, joined(support_a, support_b), context)) return false;
-  for (const PlaneSupport* support : {&support_a, &support_b}) {
-    update_figures(trial, *support, context);
-    if (trial.rms >= context.scale.eps_pi) return false;
-  }
-  return true;
+  const auto explains = [&](const PlaneSupport& support, const Plane& own) {
+    update_figures(trial, support, context);
+    return trial.rms < most_rms(own, context);
+  };
+  return explains(support_a, a) && explains(support_b, b);
 }
 
 bool same_plane(const Map& map, const Plane& a, const Plane& b, const PlaneSupport& support_a,
@@ -194,7 +204,7 @@ bool same_plane(const Map& map, const Plane& a, const Plane& b, const PlaneSuppo
   const double limit = kMaxCentroidDistance * context.scale.eps_d;
   if (std::abs(a.signed_distance(centroid_of(support_b.points))) > limit) return false;
   if (std::abs(b.signed_distance(centroid_of(support_a.points))) > limit) return false;
-  if (!fits_jointly(a, support_a, support_b, context)) return false;
+  if (!fits_jointly(a, b, support_a, support_b, context)) return false;
   if (masks.contain(a.id, b.id)) return true;
   const Apart apart = how_apart(support_a.points, support_b.points, context.scale);
   return apart.touch() || (context.finished && !are_told_apart(map, a.id, b.id) &&
