@@ -20,7 +20,6 @@ constexpr double kLocalFirstTolerance = 3e-1;
 constexpr double kLocalTolerance = 1e-4;
 constexpr double kLocalPoseTolerance = 0.02;
 constexpr double kGlobalTolerance = 1e-5;
-constexpr int kWeighings = 2;
 
 int first_keyframe(const Map& map) {
   return map.keyframes.empty() ? kNone : (*map.keyframes.begin()).id;
@@ -64,7 +63,6 @@ struct Schedule {
   bool refine_focal = false;
   double focal_sigma = 0.0;
   bool window = false;  ///< by solve_window
-  int weighings = 0;    ///< of the landmarks, each with one more pass like the second
 };
 
 int solve(BundleProblem& problem, const Schedule& schedule, const Pass& pass) {
@@ -101,10 +99,6 @@ BundleResult run_bundle(BundleProblem& problem, const Schedule& schedule, Map& m
   result.iterations = solve(problem, schedule, schedule.first);
   deactivate_outliers(problem);
   result.iterations += solve(problem, schedule, schedule.second);
-  for (int i = 0; i < schedule.weighings; ++i) {
-    weigh_landmarks(problem);
-    result.iterations += solve(problem, schedule, schedule.second);
-  }
   deactivate_outliers(problem);
   if (gauge.other != kNone) restore_distance(problem, gauge.anchor, gauge.other, gauge.distance);
   result.rms_after_px = reprojection_rms_px(problem);
@@ -197,7 +191,6 @@ BundleResult global_bundle(Map& map, Camera& camera, const BundleOptions& option
   // The start may be far off, as after a loop: outliers are told only once it has settled.
   schedule.first = {options.iterations, RobustLoss::kHuber, kGlobalTolerance};
   schedule.second = {options.iterations, RobustLoss::kCauchy, kGlobalTolerance};
-  schedule.weighings = kWeighings;
   schedule.refine_focal = options.refine_focal;
   schedule.focal_sigma = options.focal_sigma * std::sqrt(options.focal_independence);
   const BundleResult result = run_bundle(problem, schedule, map);

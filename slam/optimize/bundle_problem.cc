@@ -55,11 +55,6 @@ double chi2_of(const BundleProblem& problem, const std::vector<Pose>& poses,
                         problem.focal_factor);
 }
 
-void set_weight(BundleObservation& seen, double weight) {
-  seen.term.inverse_sigma *= weight / seen.weight;
-  seen.weight = weight;
-}
-
 bool is_determined(int observations, bool depth) { return observations >= (depth ? 1 : 2); }
 
 std::unique_ptr<ceres::CostFunction> make_cost(const ReprojectionTerm& term, bool refine_focal) {
@@ -156,7 +151,7 @@ BundleProblem collect_bundle(const Map& map, const Camera& camera,
   }
   problem.observations.assign(
       count,
-      {0, 0, ReprojectionTerm(camera, options.depth_baseline_m, {0.0, 0.0}, 1.0, 0.0), true, 1.0});
+      {0, 0, ReprojectionTerm(camera, options.depth_baseline_m, {0.0, 0.0}, 1.0, 0.0), true});
   visit_sights(map, keyframes, point_of,
                [&](std::size_t pose, std::size_t point, const Keypoint& keypoint) {
                  if (point_index[point] == kNone) return;
@@ -181,36 +176,6 @@ BundleProblem collect_whole_map(const Map& map, const Camera& camera,
   std::vector<char> fixed(keyframes.size(), 0);
   fixed.front() = 1;
   return collect_bundle(map, camera, keyframes, fixed, landmarks, options);
-}
-
-void weigh_landmarks(BundleProblem& problem) {
-  // As if so many more residuals had been seen that vary as those of most landmarks do.
-  constexpr double kPriorFreedom = 3.0;
-  constexpr double kLeastWeight = 0.1;
-  const std::vector<Pose> poses = pose_matrices(problem);
-  std::vector<double> all;
-  std::vector<double> sum(problem.points.size(), 0.0);
-  std::vector<int> rows(problem.points.size(), 0);
-  for (BundleObservation& seen : problem.observations) {
-    set_weight(seen, 1.0);
-    if (!seen.active) continue;
-    const auto point = static_cast<std::size_t>(seen.point);
-    const Eigen::Vector3d in_camera =
-        poses[static_cast<std::size_t>(seen.pose)] * problem.points[point];
-    const double chi2 = seen.term.inverse_sigma * seen.term.inverse_sigma *
-                        seen.term.squared_error_px(in_camera, problem.focal_factor);
-    if (!(chi2 <= problem.chi2_mono)) continue;
-    all.push_back(chi2);
-    sum[point] += chi2;
-    rows[point] += 2;
-  }
-  const double spread = spread_of(all, 2);
-  for (BundleObservation& seen : problem.observations) {
-    const auto point = static_cast<std::size_t>(seen.point);
-    const double freedom = std::max(0, rows[point] - 3);
-    const double own = (kPriorFreedom * spread + sum[point]) / (kPriorFreedom + freedom);
-    set_weight(seen, std::clamp(std::sqrt(spread / own), kLeastWeight, 1.0));
-  }
 }
 
 ResidualSpread measure_spread(const BundleProblem& problem) {
@@ -312,7 +277,7 @@ int deactivate_outliers(BundleProblem& problem, double gate) {
   std::vector<char> depth(problem.points.size(), 0);
   const std::vector<Pose> poses = pose_matrices(problem);
   for (BundleObservation& seen : problem.observations) {
-    const double chi2 = chi2_of(problem, poses, seen) / (seen.weight * seen.weight);
+    const double chi2 = chi2_of(problem, poses, seen);
     seen.active = std::isfinite(chi2) && chi2 <= gate * problem.threshold(seen);
     if (!seen.active) continue;
     ++left[static_cast<std::size_t>(seen.point)];

@@ -19,8 +19,7 @@ struct BundleObservation {
   int pose = 0;   ///< index into BundleProblem::poses
   int point = 0;  ///< index into BundleProblem::points
   ReprojectionTerm term;
-  bool active = true;   ///< takes part in the next solve
-  double weight = 1.0;  ///< contained in term.inverse_sigma; see weigh_landmarks()
+  bool active = true;  ///< takes part in the next solve
 };
 
 /// The part of a map that a bundle adjustment works on, as arrays.
@@ -56,12 +55,6 @@ BundleProblem collect_whole_map(const Map& map, const Camera& camera, const Bund
 /// Elimination order. Ceres orders the blocks within a group by address, which is repeatable only
 /// for blocks in one array: every array has its own group.
 enum BundleGroup { kPointGroup, kPoseGroup, kFocalGroup, kPlaneGroup };
-
-/// Weighs the sights of each landmark that agree less, at the present poses and points, than those
-/// of most do: its own variance, held to theirs by a few degrees of freedom, takes the place of
-/// theirs. What looks like a corner where one edge passes before another is wrong in every sight,
-/// by little enough to pass the test of each. That test does not see the weight.
-void weigh_landmarks(BundleProblem& problem);
 
 /// From the medians of the active observations, at the present poses and points.
 ResidualSpread measure_spread(const BundleProblem& problem);

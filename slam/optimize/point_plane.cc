@@ -178,7 +178,6 @@ JointResult refine_jointly(Map& map, const Camera& camera, const JointOptions& o
   BundleProblem start = collect_whole_map(map, camera, options.bundle);
   const PlaneProblem start_planes = collect_planes(map, start);
   deactivate_outliers(start, std::numeric_limits<double>::infinity());
-  weigh_landmarks(start);
   BundleSolve solve;
   solve.iterations = options.bundle.iterations;
   solve.loss = RobustLoss::kCauchy;

@@ -32,7 +32,7 @@ constexpr double kFarBands = 1.5;
 /// [D] Share of what is near a plane that may be seen through it, by mistake.
 constexpr double kMostBehind = 0.02;
 /// [D] Points that are seen through a plane by mistake, over those on it.
-constexpr double kSeenThrough = 0.08;
+constexpr double kSeenThrough = 0.06;
 /// Landmarks of a plane in a keyframe for it to count as seen there.
 constexpr int kSeenLandmarks = 3;
 
