@@ -23,7 +23,7 @@ RUN = ("run", SEQUENCE, "--mode", "rgbd", "--segmentation", "masks")
 
 def setUpModule():
     empty_work_folder()
-    planecast("synth", "tabletop", "-o", SEQUENCE, "--width", 160, "--height", 120, "--count", FRAMES,
+    planecast("synth", "tabletop", "-o", SEQUENCE, "--width", 320, "--height", 240, "--count", FRAMES,
               "--quiet")
     planecast(*RUN, "-o", WHOLE, "--quiet")
 
