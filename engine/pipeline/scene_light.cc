@@ -30,6 +30,37 @@ std::vector<const FrameRecord*> sampled_frames(const Sequence& sequence,
   return sampled;
 }
 
+/// The pictures of some frames, in their order, each read while the one before is looked at.
+class PicturesAhead {
+ public:
+  PicturesAhead(Sequence& sequence, const std::vector<const FrameRecord*>& frames, bool threaded)
+      : sequence_(sequence), frames_(frames), threaded_(threaded) {
+    read_next();
+  }
+
+  /// Throws what reading it threw.
+  cv::Mat next() {
+    std::future<cv::Mat> read = std::move(read_);
+    read.wait();
+    read_next();
+    return read.get();
+  }
+
+ private:
+  void read_next() {
+    if (begun_ == frames_.size()) return;
+    read_ = std::async(
+        threaded_ ? std::launch::async : std::launch::deferred,
+        [this, index = frames_[begun_++]->index] { return sequence_.read(index).image; });
+  }
+
+  Sequence& sequence_;
+  const std::vector<const FrameRecord*>& frames_;
+  bool threaded_;
+  std::size_t begun_ = 0;
+  std::future<cv::Mat> read_;
+};
+
 SceneLight scaled(SceneLight light, double gain) {
   light.mean *= gain;
   light.sun_radiance *= gain;
@@ -74,23 +105,14 @@ LightTrack::LightTrack(Sequence& sequence, const Reconstruction& reconstruction,
   const auto frames = sampled_frames(sequence, reconstruction, options);
   const std::size_t view_step =
       std::max<std::size_t>(1, frames.size() / static_cast<std::size_t>(options.most_views));
-  std::future<cv::Mat> next;
-  const auto read_ahead = [&](std::size_t i) {
-    if (i == frames.size()) return;
-    next = std::async(options.threads > 1 ? std::launch::async : std::launch::deferred,
-                      [&sequence, index = frames[i]->index] { return sequence.read(index).image; });
-  };
-  read_ahead(0);
+  PicturesAhead pictures(sequence, frames, options.threads > 1);
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    std::future<cv::Mat> read = std::move(next);
-    read.wait();
-    read_ahead(i + 1);
     const FrameRecord& frame = *frames[i];
     const slam::Pose& pose = options.causal ? *frame.causal_world_from_cam : *frame.world_from_cam;
     Sample sample;
     sample.frame_index = frame.index;
     try {
-      const cv::Mat image = read.get();
+      const cv::Mat image = pictures.next();
       if (options.follow_exposure) sample.gain = exposure_gain(reconstruction, image, pose);
       if (!fixed && i % view_step == 0) estimator.add(image, reconstruction.camera, pose);
       if (reflections) surroundings.add(image, reconstruction.camera, pose, sample.gain);

@@ -121,6 +121,9 @@ class MaskSteps {
     if (!steps_.empty()) steps_.front() = step;
   }
 
+  bool any_finer() const {
+    return std::any_of(steps_.begin(), steps_.end(), [this](int own) { return own < step_; });
+  }
   bool is_finer(int label) const {
     return static_cast<std::size_t>(label) < steps_.size() && at(label) < step_;
   }
@@ -145,6 +148,7 @@ void append_depth_samples(const Keyframe& keyframe, const PlaneContext& context,
       append_depth_sample(keyframe, context, x, y, out);
     }
   }
+  if (!steps.any_finer()) return;
   for (int y = 0; y < labels.rows; y += MaskSteps::kFinest) {
     for (int x = 0; x < labels.cols; x += MaskSteps::kFinest) {
       const int label = labels.at<std::uint16_t>(y, x);
