@@ -322,6 +322,7 @@ FinishResult System::finish() {
       joint.plane_sigma = mapper_.plane_scale().eps_pi;
       result.joint = refine_jointly(working_map_, camera_, joint);
     }
+    mapper_.find_planes_in_stereo(working_map_, options_.threads);
   }
   for (const Landmark& landmark : working_map_.landmarks) {
     working_map_.update_landmark_summary(landmark.id, options_.orb.levels);

@@ -21,6 +21,7 @@ struct Keyframe {
   cv::Mat depth;            ///< CV_32F metres, raw pixels; only while the keyframe is being mapped
   cv::Mat nearest_depth;    ///< CV_32F metres, the least of each block of raw pixels; may be empty
   cv::Mat label_image;      ///< CV_16U plane instances, raw pixels; only while it is being mapped
+  cv::Mat coarse_labels;    ///< CV_16U, every fourth pixel of them, kept; may be empty
   KeyframeId parent = kNone;  ///< spanning tree
   /// What one unit of length measured from this keyframe at its insertion is worth in the map now:
   /// a closed loop gives each part of a monocular map its own new scale.

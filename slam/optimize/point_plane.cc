@@ -68,6 +68,8 @@ PlaneProblem collect_planes(const Map& map, const BundleProblem& bundle) {
     if (plane.weak) continue;
     index[static_cast<std::size_t>(plane.id)] = static_cast<int>(problem.planes.size());
     problem.planes.push_back({plane.id, plane.normal.normalized(), plane.offset});
+    // Depth of pairs of keyframes says nothing that their poses do not.
+    if (!bundle.has_depth()) continue;
     collect_depth(map, bundle, plane, static_cast<int>(problem.planes.size()) - 1, problem.sights);
   }
   for (std::size_t i = 0; i < bundle.landmarks.size(); ++i) {

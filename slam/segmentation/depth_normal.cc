@@ -16,7 +16,7 @@ constexpr double kMaxChi2 = 4.0;
 }  // namespace
 
 std::optional<Eigen::Vector3d> surface_normal(const cv::Mat& depth, const Camera& camera, int x,
-                                              int y, int radius_px) {
+                                              int y, int radius_px, double metre) {
   const int step = std::max(radius_px / kSteps, 1);
   const int reach = kSteps * step;
   if (x < reach || y < reach || x + reach >= depth.cols || y + reach >= depth.rows) return {};
@@ -26,7 +26,7 @@ std::optional<Eigen::Vector3d> surface_normal(const cv::Mat& depth, const Camera
   for (int dy = -reach; dy <= reach; dy += step) {
     const float* row = depth.ptr<float>(y + dy);
     for (int dx = -reach; dx <= reach; dx += step) {
-      const double z = row[x + dx];
+      const double z = row[x + dx] / metre;
       if (!(z > 0.0)) continue;
       // Over so few pixels the lens only shifts them.
       const Eigen::Vector3d ray = camera.ray(centre + Eigen::Vector2d(dx, dy));

@@ -23,9 +23,9 @@ int sample_step(const Keyframe& keyframe) {
 /// Of the surface about a raw pixel, in the world; zero where it is not known.
 Eigen::Vector3d normal_at(const Keyframe& keyframe, const PlaneContext& context,
                           const Eigen::Vector2d& raw) {
-  const auto normal =
-      surface_normal(keyframe.depth, context.camera, static_cast<int>(std::lround(raw.x())),
-                     static_cast<int>(std::lround(raw.y())), sample_step(keyframe) / 2);
+  const auto normal = surface_normal(
+      keyframe.depth, context.camera, static_cast<int>(std::lround(raw.x())),
+      static_cast<int>(std::lround(raw.y())), sample_step(keyframe) / 2, context.metre);
   if (!normal) return Eigen::Vector3d::Zero();
   return keyframe.cam_from_world.linear().transpose() * *normal;
 }
@@ -76,7 +76,7 @@ void append_landmarks(const Map& map, const Keyframe& keyframe, const PlaneConte
     if (k < keyframe.labels.size()) point.label = keyframe.labels[k];
     const Keypoint& keypoint = keyframe.features->keypoints[k];
     point.pixel = keypoint.pixel.cast<double>();
-    if (context.rgbd && !keyframe.depth.empty() && keypoint.depth > 0.0F) {
+    if (context.rgbd && !keyframe.depth.empty() && (context.stereo || keypoint.depth > 0.0F)) {
       point.normal = normal_at(keyframe, context, keypoint.raw.cast<double>());
     }
     append(point, context, out);

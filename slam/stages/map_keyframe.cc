@@ -1,5 +1,6 @@
 #include "slam/stages/map_keyframe.h"
 
+#include <opencv2/imgproc.hpp>
 #include "slam/stages/stopwatch.h"
 
 namespace planecast::slam {
@@ -54,9 +55,16 @@ void drop_moving(const Camera& camera, ImageFeatures& image, std::vector<Landmar
 }
 
 /// Nobody looks at a keyframe's masks again once its planes are mapped, nor at its depth but for
-/// what it saw through, and they are most of its memory.
+/// what it saw through, and they are most of its memory. Without depth a sixteenth of the masks is
+/// kept for the end.
 void release_images(Keyframe& keyframe, const FreeSpaceOptions& options) {
-  if (!keyframe.depth.empty()) keyframe.nearest_depth = nearest_depths(keyframe.depth, options);
+  constexpr double kCoarse = 0.25;
+  if (!keyframe.depth.empty()) {
+    keyframe.nearest_depth = nearest_depths(keyframe.depth, options);
+  } else if (!keyframe.label_image.empty()) {
+    cv::resize(keyframe.label_image, keyframe.coarse_labels, {}, kCoarse, kCoarse,
+               cv::INTER_NEAREST);
+  }
   keyframe.depth.release();
   keyframe.label_image.release();
 }

@@ -72,6 +72,8 @@ class KeyframeMapper {
     PlaneMappingStats stats;
     plane_mapper_.finish(map, stats);
   }
+  /// Looks for planes in the depth of pairs of keyframes, when nothing will move any more.
+  void find_planes_in_stereo(Map& map, int threads) { plane_mapper_.find_in_stereo(map, threads); }
   PlaneScale plane_scale() const { return plane_mapper_.scale(); }
   /// Forgets everything about the map before.
   void reset();

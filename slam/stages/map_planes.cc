@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "slam/stages/plane_steps.h"
+#include "slam/stages/stereo_planes.h"
 
 namespace planecast::slam {
 
@@ -145,6 +146,23 @@ void PlaneMapper::finish(Map& map, PlaneMappingStats& stats) {
   }
   settle_planes(map, context_of(map));
   finished_ = false;
+}
+
+void PlaneMapper::find_in_stereo(Map& map, int threads) {
+  /// Of the noise model, at which depth by pairs is as precise as a sensor's.
+  constexpr double kMedianDepth_m = 2.5;
+  if (rgbd_ || !(scale_.eps_d > 0.0) || options_.merge == PlaneMerge::kPaper) return;
+  std::vector<double> depths;
+  for (const Keyframe& keyframe : map.keyframes) depths.push_back(map.median_depth(keyframe.id));
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  if (!(*middle > 0.0)) return;
+  PlaneContext context = context_of(map);
+  context.scale = {options_.eps_d * *middle, options_.eps_pi * *middle, options_.eps_d * *middle};
+  context.metre = *middle / kMedianDepth_m;
+  StereoPlaneOptions stereo;
+  stereo.depth.threads = threads;
+  find_stereo_planes(map, context, stereo);
 }
 
 void PlaneMapper::follow_map(Map& map) {

@@ -62,6 +62,8 @@ class PlaneMapper {
   /// better than they were while it grew: parts of one plane are merged across what is bare between
   /// them, and without masks and depth every keyframe is searched again, by half the thresholds.
   void finish(Map& map, PlaneMappingStats& stats);
+  /// [D] Monocular maps, after everything else: see stereo_planes.h.
+  void find_in_stereo(Map& map, int threads);
   PlaneScale scale() const { return scale_; }
 
  private:

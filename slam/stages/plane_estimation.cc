@@ -288,7 +288,7 @@ int reestimate_planes(Map& map, KeyframeId keyframe, const PlaneContext& context
   const std::vector<char> seen = seen_planes(map, keyframe);
   int changed = 0;
   for (Plane& plane : map.planes) {
-    if (!seen[plane.id]) continue;
+    if (!seen[plane.id] || plane.id < context.fixed_planes) continue;
     const std::uint64_t task = static_cast<std::uint64_t>(keyframe) * 4096 + plane.id;
     changed +=
         reestimate(map, plane, support[plane.id], context, mix_seed(context.options.seed, task));
@@ -305,6 +305,7 @@ int settle_planes(Map& map, const PlaneContext& context) {
   int changed = 0;
   std::vector<char> slab(support.size(), 0);
   for (Plane& plane : map.planes) {
+    if (plane.id < context.fixed_planes) continue;
     const PlanePoints& own = support[plane.id].points;
     const std::uint64_t task = static_cast<std::uint64_t>(plane.id);
     changed += settle(with_surroundings(map, own, context), plane, context,
@@ -315,9 +316,12 @@ int settle_planes(Map& map, const PlaneContext& context) {
     slab[plane.id] = is_slab(plane, all, eps, context.scale);
   }
   // What only lies on a plane would bend it in the joint refinement.
-  for (Plane& plane : map.planes) release_far_support(map, plane, support[plane.id], eps);
+  for (Plane& plane : map.planes) {
+    if (plane.id >= context.fixed_planes) release_far_support(map, plane, support[plane.id], eps);
+  }
   const std::vector<PlaneSupport> settled = gather_support(map, context);
   for (Plane& plane : map.planes) {
+    if (plane.id < context.fixed_planes) continue;
     const bool was_weak = plane.weak;
     update_figures(plane, settled[plane.id], context);
     plane.weak = plane.weak || was_weak || slab[plane.id] != 0;

@@ -237,6 +237,7 @@ int drop_weak_planes(Map& map, const PlaneContext& context) {
   const std::vector<PlaneSupport> support = gather_support(map, context);
   std::vector<PlaneId> dropped;
   for (Plane& plane : map.planes) {
+    if (plane.id < context.fixed_planes) continue;
     update_figures(plane, support[plane.id], context);
     const bool starved = support[plane.id].points.size() < context.options.min_inliers;
     // What the paper's merging joins may be thick; it has no such test.

@@ -177,8 +177,10 @@ PlaneSupport joined(const PlaneSupport& a, const PlaneSupport& b) {
 double most_rms(const Plane& own, const PlaneContext& context) {
   constexpr double kMostGrown = 2.0;
   constexpr double kAlways = 0.2;
+  constexpr double kAlwaysStereo = 0.5;
   if (!context.rgbd) return context.scale.eps_pi;
-  return std::clamp(kMostGrown * own.rms, kAlways * context.scale.eps_pi, context.scale.eps_pi);
+  const double least = context.stereo ? kAlwaysStereo : kAlways;
+  return std::clamp(kMostGrown * own.rms, least * context.scale.eps_pi, context.scale.eps_pi);
 }
 
 /// Whether one plane explains either support as well as planes must. [D] The smaller one would be
@@ -237,6 +239,7 @@ void take_over(Map& map, PlaneId into, PlaneId from, PlaneSupport& support_into,
   plane.stalled_keyframes = 0;
   support_into = joined(support_into, support_from);
   support_from = {};
+  if (into < context.fixed_planes) return;
   refit_robustly(plane, support_into, context);
   update_figures(plane, support_into, context);
 }

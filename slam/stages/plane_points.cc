@@ -19,12 +19,19 @@ constexpr double kSigmas = 3.0;
 /// Of strong_inliers, where no mask speaks for a plane; with samples of the depth among them.
 constexpr double kUnmasked = 2.0;
 constexpr double kUnmaskedDepth = 3.0;
+/// Of strong_inliers, for planes of stereo depth with or without a mask: where it is wrong it is
+/// wrong alike over a patch of the image.
+constexpr double kStereo = 3.0;
 
 }  // namespace
 
-double band_of(const PlaneContext& context, double z_m) {
+double depth_sigma(const PlaneContext& context, double z) {
+  return context.metre * depth_sigma_m(z / context.metre);
+}
+
+double band_of(const PlaneContext& context, double z) {
   if (!context.rgbd || !(context.scale.eps_d > 0.0)) return 1.0;
-  return std::clamp(3.0 * depth_sigma_m(z_m) / context.scale.eps_d, 1.0, kMaxBand);
+  return std::clamp(3.0 * depth_sigma(context, z) / context.scale.eps_d, 1.0, kMaxBand);
 }
 
 double band_of_landmark(const Map& map, const Landmark& landmark, const PlaneContext& context) {
@@ -33,11 +40,11 @@ double band_of_landmark(const Map& map, const Landmark& landmark, const PlaneCon
                               ? nullptr
                               : map.keyframes.find(landmark.observations.front().keyframe);
   const double z = first == nullptr ? 0.0 : (first->cam_from_world * landmark.position).z();
-  return band_of(context, std::max(z, kNearest_m));
+  return band_of(context, std::max(z, kNearest_m * context.metre));
 }
 
-bool is_too_vague(const PlaneContext& context, double z_m) {
-  return 3.0 * depth_sigma_m(z_m) > kMaxBand * context.scale.eps_d;
+bool is_too_vague(const PlaneContext& context, double z) {
+  return 3.0 * depth_sigma(context, z) > kMaxBand * context.scale.eps_d;
 }
 
 std::vector<PlaneSupport> gather_support(const Map& map, const PlaneContext& context) {
@@ -101,7 +108,9 @@ int strong_support(const Plane& plane, const PlaneContext& context) {
   constexpr double kConfirmed = 0.6;
   constexpr double kUnmaskedAtLast = 0.8;
   double factor = 1.0;
-  if (plane.label == 0) {
+  if (context.stereo) {
+    factor = kStereo;
+  } else if (plane.label == 0) {
     factor = context.finished ? kUnmaskedAtLast : context.rgbd ? kUnmaskedDepth : kUnmasked;
   } else if (plane.observers.size() >= kManyObservers) {
     factor = kConfirmed;

@@ -17,22 +17,30 @@ struct PlaneContext {
   PlaneMappingOptions options;
   PlaneScale scale;
   Camera camera;
-  bool rgbd = false;
+  bool rgbd = false;   ///< keyframes have depth
   bool young = false;  ///< so few keyframes that no plane of the map can be thin yet
   /// [D] No keyframe will come: an image shows its landmarks that were not found in it as well, and
   /// a plane is strong by fewer of them, since their depths are as good as they get.
   bool finished = false;
+  /// [D] Depth is that of pairs of keyframes (stereo_depth.h), in map units. At a median depth of
+  /// 2.5 units of `metre` it is as precise as a sensor's at 2.5 m.
+  bool stereo = false;
+  double metre = 1.0;        ///< in map units
+  PlaneId fixed_planes = 0;  ///< planes of lower ids keep their equations, and stay
 };
 
-/// A point's inlier band, as a multiple of eps_d: in RGB-D max(eps_d, 3 sigma_z(z)) at depth z_m in
-/// metres, bounded to 2.5 eps_d, beyond which depth is too vague to tell planes; mono: 1.
-double band_of(const PlaneContext& context, double z_m);
+/// Standard deviation, in map units, of a keyframe's depth at z.
+double depth_sigma(const PlaneContext& context, double z);
+
+/// A point's inlier band, as a multiple of eps_d: with depth max(eps_d, 3 sigma_z(z)) at depth z,
+/// bounded to 2.5 eps_d, beyond which depth is too vague to tell planes; without: 1.
+double band_of(const PlaneContext& context, double z);
 
 /// band_of a landmark, at its depth in the first keyframe that sees it.
 double band_of_landmark(const Map& map, const Landmark& landmark, const PlaneContext& context);
 
-/// Whether depth at z_m is vaguer than the widest band, so that it tells no plane.
-bool is_too_vague(const PlaneContext& context, double z_m);
+/// Whether depth at z is vaguer than the widest band, so that it tells no plane.
+bool is_too_vague(const PlaneContext& context, double z);
 
 /// What one keyframe shows that planes can be made of: its landmarks and, in RGB-D, samples of its
 /// depth on a coarse grid. [D] Where there are masks, also the landmarks that lie in one of them
