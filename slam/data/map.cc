@@ -200,13 +200,18 @@ std::vector<LandmarkId> Map::landmarks_of(PlaneId plane) const {
   return result;
 }
 
-double Map::median_depth(KeyframeId id) const {
+std::vector<double> Map::landmark_depths(KeyframeId id) const {
   const Keyframe& keyframe = keyframes.at(id);
   std::vector<double> depths;
   for (const LandmarkId landmark : keyframe.landmarks) {
     if (landmark == kNone) continue;
     depths.push_back((keyframe.cam_from_world * landmarks.at(landmark).position).z());
   }
+  return depths;
+}
+
+double Map::median_depth(KeyframeId id) const {
+  std::vector<double> depths = landmark_depths(id);
   if (depths.empty()) return 0.0;
   const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
   std::nth_element(depths.begin(), middle, depths.end());

@@ -53,6 +53,8 @@ class Map {
   void update_landmark_summary(LandmarkId landmark, const ScaleLevels& levels);
   /// Landmarks that own the plane, ascending.
   std::vector<LandmarkId> landmarks_of(PlaneId plane) const;
+  /// Depths of the keyframe's landmarks in its camera, in the order of its keypoints.
+  std::vector<double> landmark_depths(KeyframeId keyframe) const;
   /// Median depth of the keyframe's landmarks in its camera; 0 when it has none.
   double median_depth(KeyframeId keyframe) const;
   /// Applies new_world_from_old_world and a scale to everything: x' = scale * R x + t.

@@ -40,19 +40,6 @@ std::optional<Bounds> bounds_of(const cv::Mat& rays, const Eigen::Matrix3d& rect
 
 }  // namespace
 
-cv::Mat raw_rays(const Camera& camera, int width) {
-  const double scale = static_cast<double>(camera.width) / width;
-  cv::Mat rays(static_cast<int>(std::lround(camera.height / scale)), width, CV_32FC2);
-  for (int row = 0; row < rays.rows; ++row) {
-    for (int col = 0; col < rays.cols; ++col) {
-      const Eigen::Vector2d raw((col + 0.5) * scale - 0.5, (row + 0.5) * scale - 0.5);
-      const Eigen::Vector3d ray = camera.ray(camera.has_distortion() ? camera.undistort(raw) : raw);
-      rays.at<cv::Vec2f>(row, col) = {static_cast<float>(ray.x()), static_cast<float>(ray.y())};
-    }
-  }
-  return rays;
-}
-
 std::optional<RectifiedPair> rectify_pair(const Pose& left_from_right, const Camera& camera,
                                           const cv::Mat& rays, double nearest) {
   constexpr double kMostStretched = 1.6;

@@ -10,9 +10,6 @@
 
 namespace planecast::slam {
 
-/// Undistorted rays (x, y) of the raw pixels of images of that width, CV_32FC2.
-cv::Mat raw_rays(const Camera& camera, int width);
-
 /// A pinhole without distortion that two cameras are turned into: what the left one sees at column
 /// c, the right one sees in the same row at c - focal baseline / z.
 struct RectifiedPair {
@@ -25,10 +22,10 @@ struct RectifiedPair {
   int margin = 0;  ///< columns at the left that only the right camera fills, a multiple of 16
 };
 
-/// The pair for two views of one camera, that sees `rays`. It shows the whole of the left image, in
-/// pixels as large, and its margin is the shift at depth `nearest`, 256 at most. Nothing where an
-/// image would be stretched to more than 1.6 times its longer side: the cameras look along the line
-/// between them.
+/// The pair for two views of one camera that has `rays` (raw_rays). It shows the whole of the left
+/// image, in pixels as large, and its margin is the shift at depth `nearest`, 256 at most. Nothing
+/// where an image would be stretched to more than 1.6 times its longer side: the cameras look along
+/// the line between them.
 std::optional<RectifiedPair> rectify_pair(const Pose& left_from_right, const Camera& camera,
                                           const cv::Mat& rays, double nearest);
 

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "slam/geometry/raw_rays.h"
 #include "slam/segmentation/depth_blocks.h"
 #include "slam/segmentation/plane_segmenter.h"
 
@@ -247,18 +248,6 @@ class PixelLabeller {
   cv::Mat sigmas_;
 };
 
-cv::Mat rays_of(const Camera& camera) {
-  cv::Mat rays(camera.height, camera.width, CV_32FC2);
-  for (int y = 0; y < rays.rows; ++y) {
-    for (int x = 0; x < rays.cols; ++x) {
-      const Eigen::Vector2d raw(x, y);
-      const Eigen::Vector3d ray = camera.ray(camera.has_distortion() ? camera.undistort(raw) : raw);
-      rays.at<cv::Vec2f>(y, x) = {static_cast<float>(ray.x()), static_cast<float>(ray.y())};
-    }
-  }
-  return rays;
-}
-
 class DepthSegmenter : public PlaneSegmenter {
  public:
   explicit DepthSegmenter(const Camera& camera) : camera_(camera) {}
@@ -266,7 +255,7 @@ class DepthSegmenter : public PlaneSegmenter {
   cv::Mat segment(const FrameInput& frame) override {
     if (frame.depth.empty() || frame.depth.type() != CV_32F) return {};
     if (rays_.size() != frame.depth.size()) {
-      rays_ = rays_of(camera_.scaled_to(frame.depth.cols, frame.depth.rows));
+      rays_ = raw_rays(camera_.scaled_to(frame.depth.cols, frame.depth.rows));
     }
     const int size_px = std::max(3, frame.depth.cols / options_.blocks_per_row);
     const DepthBlocks blocks = sum_blocks(frame.depth, rays_, size_px);

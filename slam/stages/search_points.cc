@@ -36,12 +36,8 @@ struct InverseDepths {
 
 std::optional<InverseDepths> depth_range(const Map& map, const Keyframe& keyframe,
                                          const SearchPointsOptions& options) {
-  std::vector<double> depths;
-  for (const LandmarkId id : keyframe.landmarks) {
-    if (id == kNone) continue;
-    const double z = (keyframe.cam_from_world * map.landmarks.at(id).position).z();
-    if (z > 0.0) depths.push_back(z);
-  }
+  std::vector<double> depths = map.landmark_depths(keyframe.id);
+  std::erase_if(depths, [](double z) { return !(z > 0.0); });
   if (depths.size() < 10) return std::nullopt;
   const auto ranked = [&depths](std::size_t rank) {
     const auto place = depths.begin() + static_cast<std::ptrdiff_t>(rank);

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "slam/features/rectified_pair.h"
+#include "slam/geometry/raw_rays.h"
 
 namespace planecast::slam {
 
@@ -20,17 +21,18 @@ namespace {
 std::optional<double> nearest_depth(const Map& map, const Keyframe& keyframe) {
   constexpr std::size_t kFewest = 10;
   constexpr double kNearer = 0.6;
-  std::vector<double> depths;
-  for (const LandmarkId id : keyframe.landmarks) {
-    const Landmark* landmark = map.landmarks.find(id);
-    if (landmark == nullptr) continue;
-    const double z = (keyframe.cam_from_world * landmark->position).z();
-    if (z > 0.0) depths.push_back(z);
-  }
+  std::vector<double> depths = map.landmark_depths(keyframe.id);
+  std::erase_if(depths, [](double z) { return !(z > 0.0); });
   if (depths.size() < kFewest) return std::nullopt;
   const auto nearest = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 50);
   std::nth_element(depths.begin(), nearest, depths.end());
   return kNearer * *nearest;
+}
+
+Camera reduced(const Camera& camera, int most_width) {
+  const int width = std::min(most_width, camera.width);
+  const double height = static_cast<double>(camera.height) * width / camera.width;
+  return camera.scaled_to(width, static_cast<int>(std::lround(height)));
 }
 
 /// A keyframe that sees the same as another from beside it.
@@ -121,9 +123,7 @@ std::vector<const Keyframe*> keyframes_beside(const Map& map, const Keyframe& ow
 }
 
 StereoDepth::StereoDepth(const Camera& camera, const StereoDepthOptions& options)
-    : camera_(camera),
-      options_(options),
-      rays_(raw_rays(camera, std::min(options.width, camera.width))) {}
+    : camera_(camera), options_(options), rays_(raw_rays(reduced(camera, options.width))) {}
 
 cv::Mat StereoDepth::of(const Map& map, KeyframeId id) const {
   const Keyframe& own = map.keyframes.at(id);

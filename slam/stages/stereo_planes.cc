@@ -99,11 +99,12 @@ void refit_vague_planes(Map& map, const PlaneContext& context,
     if (plane.depth_points.size() < kFewestDepths) continue;
     const bool is_old = plane.id < context.fixed_planes;
     if (is_old && own.landmarks.size() >= kWellKnown) continue;
-    const bool was_weak = plane.weak;
-    const bool found = refit_by_patches(map, plane, own, context, options);
-    if (!found && is_old) refit_robustly(plane, own, context);
-    update_figures(plane, own, context);
-    plane.weak = was_weak || (!found && !is_old);
+    if (refit_by_patches(map, plane, own, context, options)) continue;
+    if (is_old) {
+      refit_robustly(plane, own, context);
+    } else {
+      plane.weak = true;
+    }
   }
 }
 
@@ -122,24 +123,50 @@ void search(Map& map, KeyframeId keyframe, const PlaneContext& context, FacingCo
   drop_weak_planes(map, context);
 }
 
-/// Planes that were there before stay as large as landmarks tell: what is smoothed goes on over the
-/// edge of a desk where what is beside it has no texture.
-void forget_growth(Map& map, PlaneId fixed_planes) {
+/// Planes that were there before stay as large as they were: what is smoothed goes on over the edge
+/// of a desk where what is beside it has no texture.
+class Extents {
+ public:
+  explicit Extents(const Map& map) {
+    for (const Plane& plane : map.planes) {
+      saved_.push_back({plane.id, plane.depth_points, plane.depth_anchors});
+    }
+  }
+  void restore(Map& map) const {
+    for (const Saved& saved : saved_) {
+      Plane& plane = map.planes.at(saved.plane);
+      plane.depth_points = saved.points;
+      plane.depth_anchors = saved.anchors;
+    }
+  }
+
+ private:
+  struct Saved {
+    PlaneId plane = kNone;
+    std::vector<Eigen::Vector3d> points;
+    std::vector<DepthAnchor> anchors;
+  };
+  std::vector<Saved> saved_;
+};
+
+/// Figures of what supports the planes now; whether they are weak is known.
+void count_support(Map& map, const PlaneContext& context) {
+  const std::vector<PlaneSupport> support = gather_support(map, context);
   for (Plane& plane : map.planes) {
-    if (plane.id >= fixed_planes) continue;
-    plane.depth_points.clear();
-    plane.depth_anchors.clear();
+    const bool weak = plane.weak;
+    update_figures(plane, support[static_cast<std::size_t>(plane.id)], context);
+    plane.weak = weak;
   }
 }
 
 }  // namespace
 
-int find_stereo_planes(Map& map, PlaneContext context, const StereoPlaneOptions& options) {
+void find_stereo_planes(Map& map, PlaneContext context, const StereoPlaneOptions& options) {
   forget_weak_planes(map);
-  const auto before = static_cast<int>(map.planes.size());
   context.rgbd = true;
   context.stereo = true;
   context.fixed_planes = map.planes.next_id();
+  const Extents extents(map);
   FacingCounts facing(map.planes.next_id());
   const StereoDepth stereo(context.camera, options.depth);
   for (const KeyframeId id : reference_keyframes(map, options)) {
@@ -158,9 +185,9 @@ int find_stereo_planes(Map& map, PlaneContext context, const StereoPlaneOptions&
   merge_planes(map, context, {});
   settle_planes(map, context);
   refit_vague_planes(map, context, options.patches);
-  forget_growth(map, context.fixed_planes);
+  extents.restore(map);
   facing.weaken_slabs(map);
-  return static_cast<int>(map.planes.size()) - before;
+  count_support(map, context);
 }
 
 }  // namespace planecast::slam

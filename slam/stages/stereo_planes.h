@@ -21,7 +21,7 @@ struct StereoPlaneOptions {
 /// the map stay what they are, but for those that fewer than 100 landmarks hold, which are
 /// refitted, and those that most of the surface about them does not face: they become weak, as
 /// slabs through what stands about. Poses and positions stay. `context` has the scale of the map;
-/// the weak planes are forgotten. Returns the number of planes found.
-int find_stereo_planes(Map& map, PlaneContext context, const StereoPlaneOptions& options);
+/// the weak planes are forgotten.
+void find_stereo_planes(Map& map, PlaneContext context, const StereoPlaneOptions& options);
 
 }  // namespace planecast::slam

@@ -19,14 +19,9 @@ namespace {
 
 using synthetic::pose_at;
 using synthetic::render_plane;
+using synthetic::small_camera;
 
 constexpr double kDepth = 2.0;
-
-Camera test_camera() {
-  Camera camera = guess_camera(320, 240);
-  camera.guessed = false;
-  return camera;
-}
 
 ImageFeatures view(ImagePreparer& preparer, const Camera& camera, const Pose& cam_from_world,
                    int index) {
@@ -111,17 +106,17 @@ void expect_landmarks_on_the_plane(const Camera& camera) {
 }
 
 TEST(SearchPoints, FindsThePlaneWhereOnlyOneImageHasCorners) {
-  expect_landmarks_on_the_plane(test_camera());
+  expect_landmarks_on_the_plane(small_camera());
 }
 
 TEST(SearchPoints, WorksThroughADistortedLens) {
-  Camera camera = test_camera();
+  Camera camera = small_camera();
   camera.distortion = {-0.2, 0.05, 0.0, 0.0, 0.0};
   expect_landmarks_on_the_plane(camera);
 }
 
 TEST(SearchPoints, LeavesWhatWasLookedForInVainAlone) {
-  const Camera camera = test_camera();
+  const Camera camera = small_camera();
   PrepareOptions prepare;
   ImagePreparer preparer(prepare, camera);
   const Pose moved = pose_at({0.2, 0.02, 0.03}, {0.01, -0.06, 0.02});
@@ -138,7 +133,7 @@ TEST(SearchPoints, LeavesWhatWasLookedForInVainAlone) {
 }
 
 TEST(CornerTracks, FollowWithoutDrift) {
-  const Camera camera = test_camera();
+  const Camera camera = small_camera();
   PrepareOptions prepare;
   ImagePreparer preparer(prepare, camera);
   const ImageFeatures reference = view(preparer, camera, Pose::Identity(), 0);

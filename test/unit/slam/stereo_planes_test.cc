@@ -22,14 +22,9 @@ namespace {
 using Eigen::Vector3d;
 using synthetic::pose_at;
 using synthetic::render_plane;
+using synthetic::small_camera;
 
 constexpr double kDepth = 2.0;
-
-Camera small_camera() {
-  Camera camera = guess_camera(320, 240);
-  camera.guessed = false;
-  return camera;
-}
 
 /// Keyframes side by side before the plane z = kDepth, which has a landmark at every `step` pixels
 /// of the first.
@@ -143,7 +138,7 @@ TEST(StereoDepth, NeedsTwoKeyframesBeside) {
 TEST(StereoPlanes, FindsAPlaneOfWhichNoLandmarkSpeaks) {
   const Camera camera = small_camera();
   Map map = map_of(camera, kBeside);
-  EXPECT_EQ(find_stereo_planes(map, context_of(camera), {}), 1);
+  find_stereo_planes(map, context_of(camera), {});
   ASSERT_EQ(map.planes.size(), 1U);
   const Plane& plane = *map.planes.begin();
   EXPECT_FALSE(plane.weak);
@@ -190,13 +185,17 @@ TEST(StereoPlanes, WhatManyLandmarksHoldKeepsItsEquation) {
   Map map = map_of(camera, kBeside, 18);
   const PlaneId known = put_plane({0, 0, -1}, {0, 0, 1.003 * kDepth}, map);
   for (Landmark& landmark : map.landmarks) landmark.plane = known;
+  // Of an earlier recording of the place.
+  add_depth_point(map.planes.at(known), 0, {0.1, 0.2, kDepth}, {0.1F, 0.2F, 2.0F});
   const Plane before = map.planes.at(known);
-  EXPECT_EQ(find_stereo_planes(map, context_of(camera), {}), 0);
+  find_stereo_planes(map, context_of(camera), {});
+  EXPECT_EQ(map.planes.size(), 1U);
   const Plane& after = map.planes.at(known);
   EXPECT_FALSE(after.weak);
   EXPECT_EQ(after.normal, before.normal);
   EXPECT_EQ(after.offset, before.offset);
-  EXPECT_TRUE(after.depth_points.empty());
+  EXPECT_EQ(after.depth_points, before.depth_points);
+  EXPECT_EQ(after.inliers, static_cast<int>(map.landmarks.size()));
 }
 
 }  // namespace

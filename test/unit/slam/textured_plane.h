@@ -11,6 +11,13 @@
 /// positions are known to far less than a pixel.
 namespace planecast::slam::synthetic {
 
+/// 320 x 240 pixels, without distortion and known.
+inline Camera small_camera() {
+  Camera camera = guess_camera(320, 240);
+  camera.guessed = false;
+  return camera;
+}
+
 /// Grey value, 40 to 215, at a point of the texture; its finest wave is 0.12 units long.
 inline double texture(double x, double y) {
   const double coarse = std::sin(9.0 * x + 2.0 * std::sin(5.0 * y)) * std::cos(11.0 * y - 4.0 * x);
